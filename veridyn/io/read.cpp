@@ -9,6 +9,7 @@
 #include "veridyn/core/text.hpp"
 #include "veridyn/io/dataflash/dataflash.hpp"
 #include "veridyn/io/dataflash/dataflash_text.hpp"
+#include "veridyn/io/formats_not_read.hpp"
 #include "veridyn/io/log/mapped_file.hpp"
 #include "veridyn/io/matlab/mat.hpp"
 #include "veridyn/io/opensim/storage.hpp"
@@ -84,6 +85,7 @@ Log read_log(const std::filesystem::path& path, const ReadOptions& options) {
   const MappedFile file(path);
   const std::string_view bytes = file.bytes();
   if (options.packet) return packet_log(*options.packet, bytes, path.string());
+  if (const auto known = format_not_read(bytes)) throw InputError(path.string(), *known);
   const Format expected = by_extension(path);
   Format format = by_content(bytes);
   if (is_npy(bytes))

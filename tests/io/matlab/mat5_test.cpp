@@ -6,6 +6,7 @@
 #include <string>
 
 #include "tests/io/matlab/small_mat_log.hpp"
+#include "tests/io/support.hpp"
 #include "tests/support/synthetic_logs.hpp"
 #include "veridyn/io/matlab/mat.hpp"
 
@@ -31,6 +32,26 @@ TEST(Mat, ReadsCompressedVariables) {
     at += 8 + size;
   }
   expect_small_mat(read_mat(packed, "packed.mat"));
+}
+
+std::string packed_variable(const std::string& plain) {
+  uLongf length = compressBound(plain.size());
+  std::string body(length, '\0');
+  EXPECT_EQ(compress(reinterpret_cast<Bytef*>(body.data()), &length, reinterpret_cast<const Bytef*>(plain.data()),
+                     plain.size()),
+            Z_OK);
+  body.resize(length);
+  return testing::pack(std::uint32_t{15}, static_cast<std::uint32_t>(length)) + body;
+}
+
+TEST(Mat, RefusesAVariableThatExpandsToGigabytesBeforeItDoes) {
+  const std::string head = testing::small_mat().substr(0, 128);
+  const std::string tag = testing::pack(std::uint32_t{14}, std::uint32_t{0x7fffff00}) + std::string(1000, '\0');
+  EXPECT_EQ(testing::message_of([&] { (void)read_mat(head + packed_variable(tag), "bomb.mat"); }),
+            "bomb.mat: a variable takes 2048 MiB, more than the 384 MiB that one may: save it in parts");
+  // What is cut short of the size that it says is damage.
+  const std::string cut = testing::pack(std::uint32_t{14}, std::uint32_t{100000}) + std::string(1000, '\0');
+  EXPECT_EQ(read_mat(head + packed_variable(cut), "cut.mat").damage.records_lost, 1U);
 }
 
 TEST(Mat, LosesOnlyTheVariableThatIsDamaged) {

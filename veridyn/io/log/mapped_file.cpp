@@ -11,10 +11,16 @@
 namespace veridyn::io {
 
 MappedFile::MappedFile(const std::filesystem::path& path) {
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  // Without O_NONBLOCK a pipe would be waited for until somebody writes into it.
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (file >= 0) {
     struct stat status {};
-    if (::fstat(file, &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0) {
+    const bool known = ::fstat(file, &status) == 0;
+    if (known && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)) {
+      ::close(file);
+      throw InputError(path.string(), "is a device or a pipe, which has no end; expected a file");
+    }
+    if (known && S_ISREG(status.st_mode) && status.st_size > 0) {
       const auto size = static_cast<std::size_t>(status.st_size);
       void* const start = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file, 0);
       if (start != MAP_FAILED) {

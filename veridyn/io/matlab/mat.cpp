@@ -228,7 +228,7 @@ Log read(std::string_view bytes, std::string source, const std::string* path) {
     if (path == nullptr) throw InputError(log.source, "a MATLAB 7.3 file can only be read from disk");
     read_mat73(*path, take, log.damage);
   } else {
-    read_mat5(bytes, take, log.damage);
+    read_mat5(bytes, log.source, take, log.damage);
   }
   builder.finish();
   internal::finish(log);

@@ -6,13 +6,13 @@
 #include <cstring>
 #include <optional>
 
+#include "veridyn/core/error.hpp"
 #include "veridyn/io/matlab/mat_value.hpp"
 
 namespace veridyn::io {
 namespace {
 
 constexpr std::size_t kFileHeader = 128;
-constexpr std::size_t kLargestVariable = std::size_t{1} << 31U;
 
 enum Stored : std::uint32_t {
   kInt8 = 1,
@@ -32,7 +32,14 @@ enum Stored : std::uint32_t {
   kUtf32 = 18,
 };
 
-enum Class : std::uint32_t { kCellClass = 1, kStructClass = 2, kCharClass = 4, kDoubleClass = 6, kUint64Class = 15 };
+enum Class : std::uint32_t {
+  kCellClass = 1,
+  kStructClass = 2,
+  kCharClass = 4,
+  kDoubleClass = 6,
+  kUint64Class = 15,
+  kOpaqueClass = 17,
+};
 
 struct Element {
   std::uint32_t type = 0;
@@ -133,37 +140,44 @@ class Elements {
   bool swap_;
 };
 
-std::optional<std::string> inflate_all(std::string_view packed) {
+/// What a compressed element expands to, which its own tag says ahead of all the rest.
+std::optional<std::string> inflated(std::string_view packed, bool swap, const std::string& source) {
+  constexpr std::size_t kTag = 8;
   z_stream stream{};
   if (inflateInit(&stream) != Z_OK) return std::nullopt;
-  std::string result;
-  result.resize(std::max<std::size_t>(4096, packed.size() * 4));
   // zlib counts in 32 bits, and so do the sizes of the format.
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
   stream.avail_in = static_cast<uInt>(packed.size());
+  std::string result(kTag, '\0');
   std::size_t filled = 0;
-  int state = Z_OK;
-  while (state == Z_OK) {
-    if (filled == result.size()) {
-      if (result.size() >= kLargestVariable) break;
-      result.resize(std::min(kLargestVariable, result.size() * 2));
+  const auto fill = [&] {
+    int state = Z_OK;
+    while (state == Z_OK && filled < result.size()) {
+      stream.next_out = reinterpret_cast<Bytef*>(result.data() + filled);
+      stream.avail_out = static_cast<uInt>(result.size() - filled);
+      const uInt free_bytes = stream.avail_out;
+      state = inflate(&stream, Z_NO_FLUSH);
+      filled += free_bytes - stream.avail_out;
     }
-    stream.next_out = reinterpret_cast<Bytef*>(result.data() + filled);
-    stream.avail_out = static_cast<uInt>(std::min<std::size_t>(result.size() - filled, 1U << 30U));
-    const uInt free_bytes = stream.avail_out;
-    state = inflate(&stream, Z_NO_FLUSH);
-    filled += free_bytes - stream.avail_out;
-    if (state == Z_BUF_ERROR && stream.avail_in == 0) break;
+    return state == Z_OK || state == Z_STREAM_END;
+  };
+  bool good = fill() && filled == kTag;
+  const std::size_t size = good ? load<std::uint32_t>(result.data() + 4, swap) : 0;
+  if (size > kLargestMatVariable) {
+    inflateEnd(&stream);
+    require_mat_size(static_cast<double>(size), "", source);
+  }
+  if (good) {
+    result.resize(kTag + size);
+    good = fill() && filled == result.size();
   }
   inflateEnd(&stream);
-  if (state != Z_STREAM_END) return std::nullopt;
-  result.resize(filled);
-  return result;
+  return good ? std::optional(std::move(result)) : std::nullopt;
 }
 
 class Parser {
  public:
-  Parser(bool swap) : swap_(swap) {}
+  Parser(bool swap, std::string source) : swap_(swap), source_(std::move(source)) {}
 
   std::optional<MatValue> matrix(std::string_view bytes, int depth) const {
     MatValue value;
@@ -173,7 +187,7 @@ class Parser {
     const auto flags = elements.next();
     if (!flags || flags->type != kUint32 || flags->data.size() < 8) return std::nullopt;
     const std::uint32_t kind = load<std::uint32_t>(flags->data.data(), swap_) & 0xffU;
-    if (kind == 17) return value;  // opaque objects have no extents
+    if (kind == kOpaqueClass) return object(std::move(value), elements);
     const auto extents = elements.next();
     if (!extents || extents->type != kInt32 || extents->data.size() < 8) return std::nullopt;
     std::size_t count = 1;
@@ -182,7 +196,7 @@ class Parser {
       if (extent < 0) return std::nullopt;
       value.extents.push_back(static_cast<std::size_t>(extent));
       count *= static_cast<std::size_t>(extent);
-      if (count > kLargestVariable) return std::nullopt;
+      if (count > kLargestCount) return std::nullopt;
     }
     const auto name = elements.next();
     if (!name || name->type != kInt8) return std::nullopt;
@@ -207,10 +221,22 @@ class Parser {
     const auto data = elements.next();
     const std::size_t width = data ? width_of(data->type) : 0;
     if (width == 0 || data->data.size() / width < count) return std::nullopt;
+    require_mat_size(8.0 * static_cast<double>(count), value.name, source_);
     value.numbers.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
       value.numbers[i] = number_at(data->data.data() + i * width, data->type, swap_);
     }
+    return value;
+  }
+
+  /// An object of a class of MATLAB's own, which is not described: its name and that of its class.
+  static std::optional<MatValue> object(MatValue value, Elements& elements) {
+    const auto name = elements.next();
+    const auto system = elements.next();
+    const auto kind = elements.next();
+    if (!name || name->type != kInt8 || !system || !kind || kind->type != kInt8) return value;
+    value.name = internal::printable(name->data);
+    value.class_name = internal::printable(kind->data);
     return value;
   }
 
@@ -265,10 +291,20 @@ class Parser {
     return value;
   }
 
+  static constexpr std::size_t kLargestCount = std::size_t{1} << 31U;
+
   bool swap_;
+  std::string source_;
 };
 
 }  // namespace
+
+void require_mat_size(double bytes, std::string_view name, const std::string& source) {
+  if (bytes <= static_cast<double>(kLargestMatVariable)) return;
+  const std::string variable = name.empty() ? "a variable" : fmt::format("variable '{}'", name);
+  throw InputError(source, fmt::format("{} takes {:.0f} MiB, more than the {} MiB that one may: save it in parts",
+                                       variable, bytes / 1048576.0, kLargestMatVariable >> 20U));
+}
 
 std::size_t MatValue::count() const {
   std::size_t product = extents.empty() ? 0 : 1;
@@ -283,7 +319,8 @@ const MatValue* MatValue::find(std::string_view field) const {
   return nullptr;
 }
 
-void read_mat5(std::string_view bytes, const std::function<void(MatValue&&)>& take, LogDamage& damage) {
+void read_mat5(std::string_view bytes, const std::string& source, const std::function<void(MatValue&&)>& take,
+               LogDamage& damage) {
   if (bytes.size() < kFileHeader) {
     damage.bytes_lost += bytes.size();
     damage.notes.emplace_back("the file ends inside its header");
@@ -291,7 +328,7 @@ void read_mat5(std::string_view bytes, const std::function<void(MatValue&&)>& ta
   }
   // "MI" as written by a machine of the other byte order reads "IM".
   const bool swap = bytes[126] == 'M';
-  const Parser parser(swap);
+  const Parser parser(swap, source);
   Elements elements(bytes.substr(kFileHeader), swap);
   while (!elements.empty()) {
     const std::size_t left = elements.left();
@@ -304,7 +341,7 @@ void read_mat5(std::string_view bytes, const std::function<void(MatValue&&)>& ta
     }
     std::optional<MatValue> value;
     if (element->type == kCompressed) {
-      if (const auto plain = inflate_all(element->data)) {
+      if (const auto plain = inflated(element->data, swap, source)) {
         Elements inner(*plain, swap);
         const auto matrix = inner.next();
         if (matrix && matrix->type == kMatrix) value = parser.matrix(matrix->data, 0);

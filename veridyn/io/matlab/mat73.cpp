@@ -85,13 +85,34 @@ MatValue convert(matvar_t& from, int depth) {
   return value;
 }
 
+/// Bytes of a variable as doubles, before it is read.
+double bytes_of(matvar_t& info, int depth) {
+  double count = info.rank > 0 ? 1.0 : 0.0;
+  for (int i = 0; i < info.rank; ++i) count *= static_cast<double>(info.dims[i]);
+  if (info.class_type != MAT_C_CELL && info.class_type != MAT_C_STRUCT) return 8.0 * count;
+  const std::size_t fields = info.class_type == MAT_C_CELL ? 1 : Mat_VarGetNumberOfFields(&info);
+  auto* const* items = static_cast<matvar_t* const*>(info.data);
+  double bytes = 0.0;
+  for (std::size_t i = 0;
+       items != nullptr && depth < kDeepestMatNesting && static_cast<double>(i) < count * static_cast<double>(fields);
+       ++i)
+    if (items[i] != nullptr) bytes += bytes_of(*items[i], depth + 1);
+  return bytes;
+}
+
 }  // namespace
 
 void read_mat73(const std::string& path, const std::function<void(MatValue&&)>& take, LogDamage& damage) {
   const std::unique_ptr<mat_t, int (*)(mat_t*)> file(Mat_Open(path.c_str(), MAT_ACC_RDONLY), &Mat_Close);
   if (file == nullptr) throw InputError(path, "cannot be opened as a MATLAB 7.3 (HDF5) file");
-  while (matvar_t* const variable = Mat_VarReadNext(file.get())) {
+  while (matvar_t* const variable = Mat_VarReadNextInfo(file.get())) {
     const std::unique_ptr<matvar_t, void (*)(matvar_t*)> owner(variable, &Mat_VarFree);
+    require_mat_size(bytes_of(*variable, 0), variable->name != nullptr ? internal::printable(variable->name) : "",
+                     path);
+    if (Mat_VarReadDataAll(file.get(), variable) != 0) {
+      ++damage.records_lost;
+      continue;
+    }
     MatValue value = convert(*variable, 0);
     if (value.kind == MatValue::Kind::kOther) ++damage.records_lost;
     take(std::move(value));

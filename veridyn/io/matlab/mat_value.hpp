@@ -13,10 +13,18 @@ namespace veridyn::io {
 /// Cells and structs within each other that a MAT file may have before it is taken for damaged.
 inline constexpr int kDeepestMatNesting = 16;
 
+/// Bytes that a variable may take, in its file after decompression and in memory as doubles: a small file that expands
+/// to gigabytes is refused before it does.
+inline constexpr std::size_t kLargestMatVariable = std::size_t{384} << 20U;
+
+/// Refuses a variable of so many bytes where that is more. @throws InputError
+void require_mat_size(double bytes, std::string_view name, const std::string& source);
+
 /// A variable of a MAT file, or a part of one.
 struct MatValue {
   enum class Kind { kNumbers, kText, kCell, kStruct, kOther };
-  std::string name;  ///< of the variable or struct field; empty in cells
+  std::string name;        ///< of the variable or struct field; empty in cells
+  std::string class_name;  ///< of an object, which is not read: "timetable", "table"
   Kind kind = Kind::kOther;
   std::vector<std::size_t> extents;  ///< column-major
   std::vector<double> numbers;
@@ -30,13 +38,14 @@ struct MatValue {
 /// Takes the variables of a level 5 file (MATLAB 5 to 7.2, `-v6`, `-v7`) one after the other.
 ///
 /// Format: MathWorks, "MAT-File Format", chapter 1. Every length is checked against what is left of the file before it
-/// is trusted; compressed variables may expand to 2 GiB, the limit of the format. A variable that does not hold
-/// together is counted in the damage and left out.
-void read_mat5(std::string_view bytes, const std::function<void(MatValue&&)>& take, LogDamage& damage);
+/// is trusted. A variable that does not hold together is counted in the damage and left out.
+/// @throws InputError where a variable is larger than `kLargestMatVariable`
+void read_mat5(std::string_view bytes, const std::string& source, const std::function<void(MatValue&&)>& take,
+               LogDamage& damage);
 
 /// As `read_mat5`, for files of MATLAB 7.3, which are HDF5, through the libraries matio and HDF5: what they do with a
 /// file that was damaged on purpose is up to them.
-/// @throws InputError when matio cannot open the file.
+/// @throws InputError when matio cannot open the file, and as `read_mat5`
 void read_mat73(const std::string& path, const std::function<void(MatValue&&)>& take, LogDamage& damage);
 
 }  // namespace veridyn::io

@@ -17,7 +17,9 @@
 namespace veridyn::io {
 namespace {
 
-constexpr std::uint64_t kLargest = std::uint64_t{2} << 30U;  // of one array, and of all together
+// Of one array, and of all together: with the archive's copy of the one that is being read, below a gigabyte.
+constexpr std::uint64_t kLargestArray = std::uint64_t{256} << 20U;
+constexpr std::uint64_t kLargest = std::uint64_t{512} << 20U;
 constexpr zip_int64_t kMostArrays = 10000;
 
 std::string text_of(zip_error_t& error) {
@@ -102,7 +104,10 @@ NpzArrays read_npz_arrays(std::string_view bytes, const std::string& source) {
     std::string name = internal::printable(stat.name);
     const std::string place = fmt::format("{}: {}", source, name);
     total += stat.size;
-    if (stat.size > kLargest || total > kLargest) throw InputError(place, "is larger than 2 GiB");
+    if (stat.size > kLargestArray || total > kLargest) {
+      throw InputError(place, fmt::format("takes {} MiB, {} with those before; one array may take {}, all together {}",
+                                          stat.size >> 20U, total >> 20U, kLargestArray >> 20U, kLargest >> 20U));
+    }
     const std::string content = member_bytes(archive.get(), i, stat, place);
     try {
       NpyArray array = read_npy(content, name);

@@ -22,7 +22,7 @@ struct NpzArrays {
 /// Reads a `.npz`, stored or deflated. Its checksums tell damage from arrays of another kind (texts, objects), which
 /// are left out.
 /// @throws InputError naming source and array: a damaged archive, a wrong checksum, encrypted or too large members
-/// (2 GiB).
+/// (256 MiB each, 512 MiB together).
 [[nodiscard]] NpzArrays read_npz_arrays(std::string_view bytes, const std::string& source);
 
 /// A `.npz` as a log. An array of stamps named `t`, `time`, `times`, `timestamp` or `timestamps` [s] gives its time to

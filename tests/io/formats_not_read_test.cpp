@@ -1,0 +1,39 @@
+#include "veridyn/io/formats_not_read.hpp"
+
+#include "tests/io/support.hpp"
+#include "tests/support/synthetic_logs.hpp"
+#include "veridyn/io/read.hpp"
+
+namespace veridyn::io {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::message_of;
+
+TEST(FormatsNotRead, AreNamedWithWhatToDo) {
+  const testing::TemporaryFolder folder;
+  const std::pair<std::string, const char*> kFiles[] = {
+      {"MDF     4.10    ", "an ASAM MDF measurement"},
+      {"VERSION \"\"\n\nBO_ 100 X: 8 A\n", "a DBC, which describes"},
+      {"(1436509052.249713) vcan0 044#2A366C2BBA\n", "a CAN log of candump"},
+      {"date Fri May 3 12:00:00 2024\nbase hex  timestamps absolute\n", "a Vector ASC log"},
+      {"LOGG\x90", "a Vector BLF log"},
+      {"\x89MCAP0\r\n", "an MCAP recording"},
+      {"#ROSBAG V2.0\n", "a ROS bag"},
+      {std::string("SQLite format 3\0", 16), "an SQLite database"},
+      {std::string("PK\x03\x04\x14\0\x06\0[Content_Types].xml", 27), "an Excel workbook"}};
+  for (const auto& [content, name] : kFiles) {
+    const auto path = folder.write("drive.dat", content);
+    EXPECT_THAT(message_of([&] { (void)read_log(path); }), HasSubstr("drive.dat: is " + std::string(name))) << name;
+  }
+}
+
+TEST(FormatsNotRead, AreNoneOfThoseThatAreRead) {
+  for (const std::string& content :
+       {testing::small_dataflash(), testing::small_dataflash_text(), testing::small_ulog(), testing::small_mat(),
+        testing::small_csv(), std::string("date,time,base\n1,2,3\n")})
+    EXPECT_FALSE(format_not_read(content));
+}
+
+}  // namespace
+}  // namespace veridyn::io
