@@ -40,8 +40,8 @@ TEST(DriveTracker, FindsAGripDropAndFollowsIt) {
   }
 }
 
-// Stated: one false alarm in 100 hours, both axles together. In 1000 s there is one with probability
-// 0.003.
+// Stated: one false alarm in 1000 hours, both axles together. In 1000 s there is one with probability
+// 0.0003.
 TEST(DriveTracker, RaisesNoMoreFalseAlarmsThanStated) {
   std::size_t alarms = 0;
   for (const std::uint64_t seed : {1U, 2U}) {

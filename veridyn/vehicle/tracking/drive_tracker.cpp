@@ -66,8 +66,8 @@ DriveTrackOptions::DriveTrackOptions() {
   watch.share = 0.5;
   // Innovations of a car grow with how it is driven: neither their mean nor their spread is a sign of a change.
   watch_innovations = false;
-  // Once in 100 hours of driving.
-  detection.false_alarm_interval_s = 360000.0;
+  // Once in 1000 hours of driving: losses of grip are found soon enough with it.
+  detection.false_alarm_interval_s = 3.6e6;
 }
 
 DriveTrackOptions DriveTrackOptions::read(const StudyTable& table) {
