@@ -21,12 +21,15 @@ namespace {
 using Eigen::Index;
 using estimation::RowMatrix;
 
-/// Steps of the integration are at most this long [s]: a roll mode of 30 1/s is then right to 3e-7.
-constexpr double kLongestStep_s = 0.0025;
+/// Steps of the integration are at most this long [s]: a roll mode of 30 1/s is then right to 1e-7.
+constexpr double kLongestStep_s = 0.002;
 /// A forecast that is shorter tells nothing [s].
 constexpr double kLeastForecast_s = 2.0;
-/// The band is left where most of the samples of so long are outside [s].
-constexpr double kLeft_s = 1.0;
+/// The band is left where over so long [s] ...
+constexpr double kLeft_s = 0.5;
+/// ... the error is larger than so many sigma (RMS): noise that is white over that time does not get there, and what
+/// all of its samples share once in 370 times.
+constexpr double kLeft_sigma = estimation::kBeyondChance;
 constexpr double kBand95 = 1.959963984540054;
 
 constexpr std::array<const char*, 8> kStates{"airspeed", "alpha", "beta", "p", "q", "r", "roll", "pitch"};
@@ -229,15 +232,13 @@ std::vector<Start> starts_of(const OutputErrorModel& model, const AxisFlight& of
   return starts;
 }
 
-/// From where on most of the next second is outside of the band; the whole where that never happens.
-Index samples_inside(const Eigen::VectorXd& error, const Eigen::VectorXd& sigma, Index from, Index per_second) {
-  const Index n = error.size();
-  Eigen::VectorXi outside(n + 1);  // running count
-  outside(0) = 0;
-  for (Index k = 0; k < n; ++k) outside(k + 1) = outside(k) + (std::abs(error(k)) > kBand95 * sigma(k) ? 1 : 0);
-  for (Index k = from; k + per_second <= n; ++k)
-    if (2 * (outside(k + per_second) - outside(k)) > static_cast<int>(per_second)) return k;
-  return n;
+/// The sample at which the band is left, looking `ahead` samples on; the number of all where that never happens.
+Index samples_inside(const Eigen::VectorXd& error, const Eigen::VectorXd& sigma, Index from, Index ahead) {
+  const Eigen::VectorXd squares = error.cwiseQuotient(sigma).cwiseAbs2();
+  const double limit = kLeft_sigma * kLeft_sigma * static_cast<double>(ahead);
+  for (Index k = from; k + ahead <= squares.size(); ++k)
+    if (squares.segment(k, ahead).sum() > limit) return k;
+  return squares.size();
 }
 
 /// A window from its start on.
@@ -274,11 +275,14 @@ Flown flown_window(OutputErrorModel& model, std::size_t segment, const Start& st
       out.sigma(k, j) = std::sqrt(std::max(0.0, parameters) + std::max(0.0, beginning) + sensor * sensor);
     }
   }
+  window.first_left_s = kInfinity;
   const auto from = static_cast<Index>(std::round(of.options.start_s / interval));
-  const auto per_second = std::max<Index>(1, static_cast<Index>(std::round(kLeft_s / interval)));
+  const auto ahead = std::max<Index>(1, static_cast<Index>(std::round(kLeft_s / interval)));
   for (Index j = 0; j < states; ++j) {
-    const Index inside = samples_inside(out.predicted.col(j) - out.measured.col(j), out.sigma.col(j), from, per_second);
+    const Index inside = samples_inside(out.predicted.col(j) - out.measured.col(j), out.sigma.col(j), from, ahead);
     window.horizon_s.push_back(interval * static_cast<double>(std::max<Index>(0, std::min(inside, n - 1) - from)));
+    if (axis_of_state(model.outputs()[at(j)].name) == of.axis)
+      window.first_left_s = std::min(window.first_left_s, window.horizon_s.back());
   }
   return out;
 }
@@ -437,6 +441,9 @@ OpenLoop fly_open_loop(std::span<const PreparedFlight> flights, RowUse use, cons
   std::vector<CoefficientModel> models;
   for (const Coefficient c : known)
     if (const CoefficientModel* model = subject.model.find(c)) models.push_back(*model);
+  std::ranges::copy_if(options.offsets, std::back_inserter(out.offsets), [&](Coefficient c) {
+    return std::ranges::find(models, c, &CoefficientModel::coefficient) != models.end();
+  });
   const Eigen::MatrixXd covariance = covariance_of(models, estimate);
   std::vector<Flown> flown;
   std::vector<estimation::ModelOutput> states;

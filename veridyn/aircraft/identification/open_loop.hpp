@@ -44,7 +44,9 @@ struct OpenLoopWindow {
   bool diverged = false;       ///< the simulation left the model's range, and was cut there
   /// The initial state, then the offsets, with names, units and values.
   std::vector<estimation::SegmentParameter> start = {};
-  std::vector<double> horizon_s = {};  ///< of the axis's states, in their order
+  /// Until each simulated state leaves its band, in their order: those of the axis that it is judged on and the others.
+  std::vector<double> horizon_s = {};
+  double first_left_s = 0.0;  ///< the shortest of those that it is judged on
 };
 
 /// How well the states of one of several flights are predicted.
@@ -56,7 +58,8 @@ struct OpenLoopFlight {
 /// The identified model flown open loop: integrated from recorded deflections and thrust alone.
 struct OpenLoop {
   OpenLoopOptions options;
-  double forecast_s = 0.0;  ///< time that was forecast
+  double forecast_s = 0.0;                ///< time that was forecast
+  std::vector<Coefficient> offsets = {};  ///< that have a constant of their own in each window
   std::vector<OpenLoopWindow> windows;
   std::vector<OpenLoopState> states;          ///< longitudinal, then lateral
   std::vector<OpenLoopFlight> by_flight;      ///< the same flight by flight, where there are several
@@ -86,9 +89,10 @@ struct OpenLoop {
 /// initial state and offsets (these have a prior of 0 +- 0.05), the sensitivities S of the prediction and A of those
 /// seconds, and the sensor's error R as it passes the filters; so an error of a parameter that the initial state made
 /// up for does not count twice. Errors of smoothed signals count as one observation in those seconds, since they hardly
-/// change in them. The band is left where more than half of the samples of the next second are outside.
+/// change in them. The band counts as left where the error of the next half second exceeds
+/// three sigma (RMS): 5 % of the samples are outside of a right band, and a state that leaves may cross it again.
 ///
-/// The integration is that of Runge-Kutta of fourth order at steps of 2.5 ms at most, inputs linear between samples.
+/// The integration is that of Runge-Kutta of fourth order at steps of 2 ms at most, inputs linear between samples.
 /// Windows run on the threads of `progress`, to the same bits on any number.
 /// @param estimate  of the parameters' covariance, by name; what it lacks is taken for exact
 [[nodiscard]] OpenLoop fly_open_loop(std::span<const PreparedFlight> flights, RowUse use, const Subject& subject,
@@ -97,11 +101,11 @@ struct OpenLoop {
 
 /// The rows that grade it, which bear on the prediction:
 /// - *open loop horizon*, of each axis: how long its states stay within their bands, in periods of the short-period
-///   motion (longitudinal) or the Dutch roll (lateral). Below 3 with care. Below 1 failed where the error is also more
+///   motion (longitudinal) or the Dutch roll (lateral). Below 10 with care. Below 3 failed where the error is also more
 ///   than a quarter of the motion's standard deviation: the bands know parameters and sensors, and not the gusts that a
 ///   reconstruction misses, which throw a right model out of them by less. Where nothing is known of the air
-///   (`air_known`), more than 3.3 times, an R^2 of -10. Not verified where the windows are shorter than 3 periods and
-///   none is left;
+///   (`air_known`), more than 3.3 times, an R^2 of -10. Not verified where the windows are shorter than 10 periods and
+///   most are held to their end;
 /// - *open loop against the mean*, of each state: with care where the error is larger than the motion's standard
 ///   deviation;
 /// - *open loop divergence*: failed where a simulation left the model's range.

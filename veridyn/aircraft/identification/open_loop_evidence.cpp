@@ -14,7 +14,7 @@ using estimation::Outcome;
 using estimation::Purpose;
 
 /// Periods that a forecast has to hold: with care below the first, failed below the second where the error is large.
-constexpr double kCarePeriods = 3.0, kFailedPeriods = 1.0;
+constexpr double kCarePeriods = 10.0, kFailedPeriods = 3.0;
 /// Errors that are large, over the motion's standard deviation: where the air is known, and where gusts may have moved
 /// the aircraft, which the model was not given.
 constexpr double kLargeError = 0.25, kLargeErrorInGusts = 3.3;
@@ -67,11 +67,17 @@ std::optional<Evidence> horizon_row(const OpenLoop& flown, Axis axis) {
       .text = fmt::format("{}: integrated from deflections and thrust alone, the model {}: {:.1f} periods of the {}",
                           to_string(axis), what, worst.periods, motion),
       .bears_on = Purpose::kPrediction,
-      .advice = !left              ? ""
-                : !flown.air_known ? "record the ground velocity, so that gusts can be an input, or say that the air "
-                                     "was calm (validate.open_loop_gusts = false)"
-                                   : "see in the report in which manoeuvre it leaves; a term may be missing "
-                                     "(identify.structure), or an air-data sensor be wrong"};
+      .advice = !left ? ""
+                : !flown.air_known
+                    ? "record the ground velocity, so that gusts can be an input, or say that the air was calm "
+                      "(validate.open_loop_gusts = false)"
+                : worst.state->normalised_rmse < kLargeError
+                    ? "trust its forecasts as far as the error found, not its "
+                      "bands: these know parameters and sensors, not the gusts "
+                      "that the reconstruction misses"
+                    : "see in the report in which manoeuvre it leaves; a term "
+                      "may be missing (identify.structure), or an air-data "
+                      "sensor be wrong"};
 }
 
 }  // namespace

@@ -36,24 +36,32 @@ NaturalPeriods natural_periods(const Subject& s, const AeroVariables<double>& at
   const AeroCoefficients<Jet> c = s.model.evaluate(v);
   const double qS = 0.5 * rho * at.Va * at.Va * s.wing_area, momentum = s.mass * at.Va;
   const double per_q = 0.5 * s.chord / at.Va, per_r = 0.5 * s.span / at.Va;
-  const auto has = [&](Coefficient which) { return s.model.find(which) != nullptr; };
-  if (has(Coefficient::kCL) && has(Coefficient::kCm)) {
-    const double drag = has(Coefficient::kCD) && std::isfinite(c.CD.a) ? c.CD.a : 0.0;
-    const double Z_alpha = -qS * (c.CL.v[kAlpha] + drag) / momentum, Z_q = -qS * c.CL.v[kQ] * per_q / momentum;
-    const double M_alpha = qS * s.chord * c.Cm.v[kAlpha] / s.inertia->Jy;
-    const double M_q = qS * s.chord * c.Cm.v[kQ] * per_q / s.inertia->Jy;
+  // A coefficient that is not known acts as none.
+  const auto valid = [&](Coefficient which, const Jet& value) {
+    return s.model.find(which) != nullptr && std::isfinite(value.a);
+  };
+  const auto known = [&](Coefficient which, const Jet& value) {
+    return valid(which, value) ? Jet(Jet(qS) * value) : Jet(0.0);
+  };
+  const Jet lift = known(Coefficient::kCL, c.CL), drag = known(Coefficient::kCD, c.CD);
+  const Jet ca = cos(v.alpha), sa = sin(v.alpha);
+  // Force and moment in body axes; the force acts off the centre of gravity.
+  const Jet X = lift * sa - drag * ca, Y = known(Coefficient::kCY, c.CY), Z = -drag * sa - lift * ca;
+  const auto& f = s.force_point;
+  const Jet L = Jet(s.span) * known(Coefficient::kCl, c.Cl) + f[1] * Z - f[2] * Y;
+  const Jet M = Jet(s.chord) * known(Coefficient::kCm, c.Cm) + f[2] * X - f[0] * Z;
+  const Jet N = Jet(s.span) * known(Coefficient::kCn, c.Cn) + f[0] * Y - f[1] * X;
+  if (valid(Coefficient::kCL, c.CL) && valid(Coefficient::kCm, c.Cm)) {
+    const double Z_alpha = -(lift.v[kAlpha] + drag.a) / momentum, Z_q = -lift.v[kQ] * per_q / momentum;
+    const double M_alpha = M.v[kAlpha] / s.inertia->Jy, M_q = M.v[kQ] * per_q / s.inertia->Jy;
     periods.short_period_s = period_of(Z_alpha * M_q - M_alpha * (1.0 + Z_q));
   }
-  if (has(Coefficient::kCY) && has(Coefficient::kCn)) {
+  if (valid(Coefficient::kCY, c.CY) && valid(Coefficient::kCn, c.Cn)) {
     const Inertia& J = *s.inertia;
-    const double det = J.Jx * J.Jz - J.Jxz * J.Jxz;
     // Rolling accelerates in yaw through the product of inertia.
-    const auto yaw = [&](int by) {
-      const double roll = has(Coefficient::kCl) && std::isfinite(c.Cl.v[by]) ? c.Cl.v[by] : 0.0;
-      return qS * s.span * (J.Jxz * roll + J.Jx * c.Cn.v[by]) / det;
-    };
-    const double Y_beta = qS * c.CY.v[kBeta] / momentum, Y_r = qS * c.CY.v[kR] * per_r / momentum;
-    periods.dutch_roll_s = period_of(Y_beta * yaw(kR) * per_r + yaw(kBeta) * (1.0 - Y_r));
+    const Jet yaw = (J.Jxz * L + J.Jx * N) / (J.Jx * J.Jz - J.Jxz * J.Jxz);
+    const double Y_beta = Y.v[kBeta] / momentum, Y_r = Y.v[kR] * per_r / momentum;
+    periods.dutch_roll_s = period_of(Y_beta * yaw.v[kR] * per_r + yaw.v[kBeta] * (1.0 - Y_r));
   }
   return periods;
 }

@@ -18,8 +18,9 @@ struct NaturalPeriods {
 ///
 ///     [Z_alpha, 1 + Z_q; M_alpha, M_q]  and  [Y_beta, -1 + Y_r; N_beta, N_r]
 ///
-/// with derivatives from automatic differentiation of the model. Within some 10 % of the eigenvalues of the whole
-/// motion for ordinary aircraft; a heavily damped motion has a period here all the same, that of its stiffness.
+/// with derivatives from automatic differentiation of the model. A heavily damped motion has a period here all the
+/// same, that of its stiffness. Against the eigenvalues of the whole motion: within 10 % for the short period of
+/// `unatrap`; worse where the two are no mode of their own.
 /// Parameters without a value (NaN) leave no period.
 /// @param at  airspeed [m/s], flow angles and deflections [rad]; normalised rates are those given
 /// @param rho  air density [kg/m^3]
