@@ -191,9 +191,9 @@ void print_identification(const FlightAnalysis& analysis, const std::filesystem:
   for (const OpenLoopState& s : analysis.open_loop.states) {
     print_line(options,
                fmt::format("  open loop    {}: RMSE {:.3g} {}, {:.2f} of what it varies, Theil {:.3f}, {:.0f} % "
-                           "in the bands, left after {:.1f} s ({} of {} windows held)",
-                           s.name, s.fit.rmse, s.unit, s.normalised_rmse, s.fit.theil, 100.0 * s.inside, s.horizon_s,
-                           s.held, s.windows));
+                           "in the bands, {} {:.1f} s ({} of {} windows held)",
+                           s.name, s.fit.rmse, s.unit, s.normalised_rmse, s.fit.theil, 100.0 * s.inside,
+                           2 * s.held > s.windows ? "not left in" : "left after", s.horizon_s, s.held, s.windows));
   }
   print_line(options, fmt::format("report: {}", (folder / "report.html").string()));
 }
