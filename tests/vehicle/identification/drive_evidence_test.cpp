@@ -250,7 +250,7 @@ TEST(DriveEvidence, AccountsForALeanToFivePercent) {
   }
 }
 
-// Limits are 0.07 s either way, with care, and 0.4 s late, failed; what three standard errors allow is within them.
+// Limits are 0.04 s either way, with care, and 0.4 s late, failed; what three standard errors allow is within them.
 TEST(DriveEvidence, JudgesTheOrderInTimeByTheDelayThatTheModelFinds) {
   const Evidence row{.name = std::string(kOrderInTime),
                      .about = "steer",
@@ -269,8 +269,8 @@ TEST(DriveEvidence, JudgesTheOrderInTimeByTheDelayThatTheModelFinds) {
   EXPECT_THAT(in_time.text, HasSubstr("0.004 +- 0.001 s later than its model"));
   EXPECT_THAT(judged_by(-0.004, 0.001).text, HasSubstr("0.004 +- 0.001 s earlier than its model"));
   for (const auto& [value, sigma, outcome] :
-       {std::tuple{0.074, 0.001, Outcome::kCare}, std::tuple{0.072, 0.001, Outcome::kPassed},
-        std::tuple{-0.074, 0.001, Outcome::kCare}, std::tuple{-0.072, 0.001, Outcome::kPassed},
+       {std::tuple{0.044, 0.001, Outcome::kCare}, std::tuple{0.042, 0.001, Outcome::kPassed},
+        std::tuple{-0.044, 0.001, Outcome::kCare}, std::tuple{-0.042, 0.001, Outcome::kPassed},
         std::tuple{0.15, 0.05, Outcome::kPassed}, std::tuple{0.404, 0.001, Outcome::kFailed},
         std::tuple{0.402, 0.001, Outcome::kCare}, std::tuple{-0.5, 0.001, Outcome::kCare}}) {
     const Evidence by_model = judged_by(value, sigma);
