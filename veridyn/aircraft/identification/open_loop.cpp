@@ -413,12 +413,12 @@ NaturalPeriods periods_of(std::span<const PreparedFlight> flights, std::span<con
   return natural_periods(subject, aero_variables(mean, subject, rho / count), rho / count);
 }
 
-std::string text_of(const OpenLoop& o, bool gusts) {
+std::string text_of(const OpenLoop& o, bool gusts, bool any_model) {
   if (!o.available())
-    return fmt::format("nothing was flown open loop: {}",
-                       o.windows.empty() ? fmt::format("no unseen stretch lasts {:g} s with all signals",
-                                                       o.options.start_s + kLeastForecast_s)
-                                         : "no coefficient moves a state");
+    return fmt::format(
+        "nothing was flown open loop: {}",
+        any_model ? fmt::format("no unseen stretch lasts {:g} s with all signals", o.options.start_s + kLeastForecast_s)
+                  : "no coefficient that moves a state was identified");
   const auto diverged = std::ranges::count(o.windows, true, &OpenLoopWindow::diverged);
   return fmt::format(
       "{} windows of {:.0f} s at most ({:.0f} s forecast in all) integrated from deflections and thrust alone on data "
@@ -476,7 +476,7 @@ OpenLoop fly_open_loop(std::span<const PreparedFlight> flights, RowUse use, cons
   const NaturalPeriods periods = periods_of(flights, flown, subject);
   out.short_period_s = periods.short_period_s;
   out.dutch_roll_s = periods.dutch_roll_s;
-  out.text = text_of(out, gusts);
+  out.text = text_of(out, gusts, !models.empty());
   return out;
 }
 
