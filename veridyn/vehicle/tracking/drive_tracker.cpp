@@ -55,6 +55,10 @@ VehicleParameters<double> known_vehicle(const DriveTrackStart& start) {
   return vehicle;
 }
 
+/// Where an axle slips more than this share further than tyres without a limit would, a row of it says more of the
+/// limit than of the stiffness.
+constexpr double kMostSaturation = 0.3;
+
 }  // namespace
 
 DriveTrackOptions::DriveTrackOptions() {
@@ -219,8 +223,8 @@ void DriveTracker::take_rows(std::vector<DriveChange>& found) {
       found.push_back(changes_.back());
     }
   };
-  feed(TrackedAxle::kFront, rows.front.x, rows.front.z);
-  feed(TrackedAxle::kRear, rows.rear.x, rows.rear.z);
+  if (rows.saturation[0] < kMostSaturation) feed(TrackedAxle::kFront, rows.front.x, rows.front.z);
+  if (rows.saturation[1] < kMostSaturation) feed(TrackedAxle::kRear, rows.rear.x, rows.rear.z);
   feed(TrackedAxle::kUndersteer, rows.understeer.x, rows.understeer.z);
   if (!found.empty()) {
     // The road or the tyres are not what they were: what was learned of them is forgotten, by all three.
