@@ -37,9 +37,9 @@ struct OpenLoopState {
 
 /// One stretch that was flown.
 struct OpenLoopWindow {
-  std::string flight;  ///< its name, where there are several
+  std::string flight = {};  ///< its name, where there are several
   Axis axis = Axis::kLongitudinal;
-  TimeSpan span;               ///< in its flight's own time [s]
+  TimeSpan span = {};          ///< in its flight's own time [s]
   double forecast_from = 0.0;  ///< what lies before gave the initial state [s]
   bool diverged = false;       ///< the simulation left the model's range, and was cut there
   /// The initial state, then the offsets, with names, units and values.
