@@ -108,6 +108,7 @@ file = @LOG@
 
 [validate]
 # period = "5 s"                 # the model is started again this often
+# open_loop = "20 s"             # and flown this long from deflections and thrust alone
 
 # `veridyn track study.toml` follows the parameters on line, replayed or live (docs/tracking.md).
 [track]
