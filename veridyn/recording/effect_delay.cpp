@@ -21,6 +21,8 @@ constexpr double kLeastExplained = 0.3;
 constexpr double kLeastByCause = 0.05;
 /// What the cause must explain for a delay in doubt to be told.
 constexpr double kLeastInDoubt = 0.2;
+/// Standard errors by which a delay must explain more than none. What few manoeuvres show scatters between parts.
+constexpr double kBetterThanNone = 2.0;
 /// Parts of the recording that the jackknife leaves out in turn.
 constexpr std::size_t kParts = 10;
 
@@ -237,13 +239,15 @@ double top_of(const std::vector<double>& shares) {
   return static_cast<double>(best) + std::clamp(part, -1.0, 1.0);
 }
 
-/// Standard error of the top, in samples (Efron & Tibshirani 1993, section 11.5).
-double jackknife_sigma(const Shares& shares) {
-  std::array<double, kParts> tops{};
+/// Standard error of what `statistic` is of the shares, by what it is without each part (Efron & Tibshirani 1993,
+/// section 11.5).
+template <typename Statistic>
+double jackknife_sigma(const Shares& shares, const Statistic& statistic) {
+  std::array<double, kParts> values{};
   double mean = 0.0;
-  for (std::size_t i = 0; i < kParts; ++i) mean += (tops[i] = top_of(shares.without[i])) / kParts;
+  for (std::size_t i = 0; i < kParts; ++i) mean += (values[i] = statistic(shares.without[i])) / kParts;
   double squares = 0.0;
-  for (const double top : tops) squares += (top - mean) * (top - mean);
+  for (const double value : values) squares += (value - mean) * (value - mean);
   return std::sqrt((kParts - 1.0) / kParts * squares);
 }
 
@@ -298,7 +302,7 @@ DelayReport common_effect_delay(std::string cause_name, std::string effect_name,
   report.delay_s = (static_cast<double>(first) + top_of(explained)) * step_s;
   // A cause that jumps between two samples, as a servo without lag does, is known to half a sample.
   constexpr double kOfASample = 0.5;
-  report.sigma_s = std::hypot(jackknife_sigma(shares), kOfASample) * step_s;
+  report.sigma_s = std::hypot(jackknife_sigma(shares, top_of), kOfASample) * step_s;
   if (outweighed && (by_cause < kLeastInDoubt || report.delay_s < 0.0)) {
     // A cause that reacts to what is left seems to follow its effect.
     report.delay_s = report.sigma_s = 0.0;
@@ -312,11 +316,17 @@ DelayReport common_effect_delay(std::string cause_name, std::string effect_name,
                     report.delay_s, report.sigma_s, kind);
     return report;
   }
+  // Where causes and others move together two lags may explain as much: the top's own error does not show that.
+  const auto gain = [&](const std::vector<double>& share) {
+    return share[at] - share[static_cast<std::size_t>(longest)];
+  };
   const double least = std::max(options.min_delay_s, 3.0 * report.sigma_s);
   if (report.delay_s < -least) {
     report.text = fmt::format("negative: a {} cannot follow its effect, left alone", kind);
   } else if (report.delay_s < least) {
     report.text = "too small to matter";
+  } else if (gain(explained) < kBetterThanNone * jackknife_sigma(shares, gain)) {
+    report.text = "not determined: no delay fits as well";
   } else {
     report.applied = true;
     report.text = "applied";
