@@ -69,9 +69,9 @@ speed = "80 km/h"
 /// The drive, recorded.
 constexpr const char* kCueingRecorded = R"toml([data]
 file = @LOG@
-# frame = "flu"                    # x forward, y left, z up; "frd": y right, z down
+@READ@# frame = "flu"                    # x forward, y left, z up; "frd": y right, z down
 [data.map]                         # `veridyn inspect` lists what the log has
-# accel_x = "IMU.ax"
+@MAP@# accel_x = "IMU.ax"
 # accel_y = "IMU.ay"
 # accel_z = "IMU.az"
 # gyro_z = { channel = "yaw_rate", unit = "deg/s" }

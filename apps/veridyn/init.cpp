@@ -9,7 +9,11 @@
 #include "apps/veridyn/muscle_template.hpp"
 #include "apps/veridyn/output_folder.hpp"
 #include "apps/veridyn/vehicle_template.hpp"
+#include "veridyn/aircraft/sensors/channel_map.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/recording/channel_recognition.hpp"
+#include "veridyn/recording/study_data.hpp"
+#include "veridyn/vehicle/identification/drive_log.hpp"
 
 namespace veridyn::app {
 namespace {
@@ -60,14 +64,14 @@ upper = "? deg"
 
 [data]
 file = @LOG@
-# files = ["IMU.csv", "GPS.csv"] # the tables of one flight instead
+@READ@# files = ["IMU.csv", "GPS.csv"] # the tables of one flight instead
 # calibration = "calibration.toml"   # of pitot tube and vanes; `veridyn init calibration` makes one
 # from = 120                     # s, only this part of the log
 # to = 600
 
 # ArduPilot and PX4 logs are mapped automatically; what is named here wins. `veridyn inspect` lists the channels.
 [data.map]
-# airspeed = "ARSP.Airspeed"
+@MAP@# airspeed = "ARSP.Airspeed"
 # alpha    = { channel = "CUR2.Volt", zero = 2.5, scale = 0.61, unit = "rad", delay = "20 ms" }
 # aileron  = { channels = ["left", "right"], weights = [0.5, -0.5], unit = "deg" }
 # beta     = "none"              # do not use it
@@ -161,14 +165,74 @@ std::string quoted_argument(const Arguments& arguments, const char* name) {
   return quoted_path(arguments.text(name), arguments.common.out);
 }
 
+/// What a study says of the log that it is about.
+struct LogSections {
+  std::string read;  ///< keys of [data] by which it was read
+  std::string map;   ///< lines of [data.map]
+};
+
+/// The keys of `[data]` that the command line gave (`--set data.decimal=","`), as lines of it.
+std::string reading_keys(const Arguments& arguments) {
+  std::string lines;
+  for (const std::string& text : arguments.common.overrides) {
+    constexpr std::string_view kTable = "data.";
+    const std::size_t equals = text.find('=');
+    if (!text.starts_with(kTable) || equals == std::string::npos) continue;
+    std::string value = text.substr(equals + 1);
+    try {
+      static_cast<void>(Study::parse("value = " + value, "--set"));
+    } catch (const InputError&) {
+      value = '"' + value + '"';
+    }
+    lines += fmt::format("{} = {}\n", text.substr(kTable.size(), equals - kTable.size()), value);
+  }
+  return lines;
+}
+
+/// What is known of the log; nothing where the file is not there yet.
+template <typename Map>
+LogSections log_sections(const Arguments& arguments, std::span<const recording::StandardChannel> standard,
+                         std::span<const recording::ChannelAlias> aliases, Map map_log) {
+  const std::string& file = arguments.text("--log");
+  const Study study = Study::parse("", "--set", {}, arguments.common.overrides);
+  const StudyTable data = study.root().table_or_empty("data");
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) {
+    if (!arguments.common.overrides.empty()) throw InputError(file, "no such file, which --set data... is about");
+    return {};
+  }
+  Recording log = recording::read_study_file(data, file);
+  static_cast<void>(data.has("frame") ? data.text("frame") : std::string());
+  study.root().finish();
+  log = recording::without_missing(log);
+  const recording::MappedRecording mapped = map_log(log);
+  LogSections sections{reading_keys(arguments), {}};
+  for (const std::string& warning : log.warnings) sections.read += fmt::format("# note: {}\n", warning);
+  sections.map = recording::map_section(log, mapped, standard, aliases);
+  return sections;
+}
+
 int init_aircraft(const Arguments& arguments) {
-  return write_study(arguments, filled(kAircraftStudy, "@LOG@", quoted_argument(arguments, "--log")),
-                     "fill in the subject");
+  const LogSections log =
+      log_sections(arguments, aircraft::standard_channels(), aircraft::channel_aliases(),
+                   [](const Recording& r) { return aircraft::map_channels(r, StudyTable("data.map"), {}); });
+  std::string study = filled(kAircraftStudy, "@LOG@", quoted_argument(arguments, "--log"));
+  study = filled(filled(study, "@READ@", log.read), "@MAP@", log.map);
+  return write_study(arguments, study, "fill in the subject, confirm [data.map]");
+}
+
+/// The part of a study about a recorded drive.
+std::string drive_section(const Arguments& arguments, const char* text) {
+  const LogSections log =
+      log_sections(arguments, vehicle::standard_drive_channels(), vehicle::drive_channel_aliases(),
+                   [](const Recording& r) { return vehicle::map_drive_channels(r, StudyTable("data.map")); });
+  const std::string data = filled(text, "@LOG@", quoted_argument(arguments, "--log"));
+  return filled(filled(data, "@READ@", log.read), "@MAP@", log.map);
 }
 
 int init_vehicle(const Arguments& arguments) {
   const bool log = !arguments.text("--log").empty();
-  const std::string data = log ? filled(kDriveLog, "@LOG@", quoted_argument(arguments, "--log")) : kNoDriveLog;
+  const std::string data = log ? drive_section(arguments, kDriveLog) : kNoDriveLog;
   // A car to drive is given; that of a log is the user's to weigh and measure.
   std::string study = filled(kVehicleStudy, "@DATA@", data);
   study = filled(study, "@MASS@", log ? "\"? kg\"   " : "\"1480 kg\"");
@@ -184,8 +248,7 @@ int init_muscle(const Arguments& arguments) {
 
 int init_cueing(const Arguments& arguments) {
   const bool log = !arguments.text("--log").empty();
-  const std::string data =
-      log ? filled(kCueingRecorded, "@LOG@", quoted_argument(arguments, "--log")) : kCueingSimulated;
+  const std::string data = log ? drive_section(arguments, kCueingRecorded) : kCueingSimulated;
   return write_study(arguments, filled(kCueingStudy, "@DATA@", data), "choose platform and algorithms", "cue");
 }
 
@@ -233,7 +296,8 @@ Command init_command() {
                           .type = "FILE"},
                          kForce},
            .default_out = ".",
-           .example = "veridyn init vehicle --log drive.csv --out my_car",
+           .example = "veridyn init vehicle --log drive.csv --out my_car\n  veridyn init vehicle --log drive.txt --set "
+                      "data.time.column=clock --out my_car",
            .run = init_vehicle},
           {.name = "aircraft",
            .summary = "study of an aircraft: study.toml in --out",

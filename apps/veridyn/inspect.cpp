@@ -9,6 +9,7 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/read.hpp"
 #include "veridyn/recording/drive_axis_check.hpp"
+#include "veridyn/recording/study_data.hpp"
 #include "veridyn/vehicle/identification/drive_log.hpp"
 
 namespace veridyn::app {
@@ -123,7 +124,11 @@ int inspect(const Arguments& arguments) {
   const std::string& pose = arguments.text("--pose");
   if (std::filesystem::path(file).extension() == ".toml") return inspect_drive(arguments, file);
   if (is_model(file)) return inspect_model(file, pose, arguments.flag("--as-opensim"), arguments.common);
-  io::Log log = io::read_log(file);
+  const Study study = Study::parse("", "--set", {}, arguments.common.overrides);
+  const StudyTable data = study.root().table_or_empty("data");
+  const io::ReadOptions options = recording::read_study_options(data, file);
+  study.root().finish();
+  io::Log log = io::read_log(file, options);
   const std::string format = log.format;
   const io::LogDamage damage = log.damage;
   const std::size_t topics = log.topics.size();
@@ -210,7 +215,8 @@ Command inspect_command() {
                     "a .csv, .mot or .sto file or for one pose 'elbow_flexion=90 deg,...'"},
            {.name = "--as-opensim", .help = "with --pose: wrap paths as OpenSim does, jumps included", .value = false}},
       .example =
-          "veridyn inspect flight.bin\n  veridyn inspect drive.csv\n  veridyn inspect arm26.osim\n  veridyn inspect "
+          "veridyn inspect flight.bin\n  veridyn inspect drive.csv\n  veridyn inspect drive.txt --set "
+          "data.time.column=clock\n  veridyn inspect arm26.osim\n  veridyn inspect "
           "arm --pose "
           "\"elbow_flexion=90 deg\"",
       .run = inspect};

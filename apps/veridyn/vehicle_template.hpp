@@ -109,9 +109,9 @@ constexpr const char* kNoDriveLog = R"toml(# [data]
 
 constexpr const char* kDriveLog = R"toml([data]
 file = @LOG@
-# frame = "flu"                    # x forward, y left, z up; "frd": y right, z down
+@READ@# frame = "flu"                    # x forward, y left, z up; "frd": y right, z down
 [data.map]                         # channels with the names steer, speed, yaw_rate, accel_y need no mapping
-# steering_wheel = { channel = "SteeringAngle", unit = "deg" }
+@MAP@# steering_wheel = { channel = "SteeringAngle", unit = "deg" }
 # yaw_rate = { channel = "GyroZ", unit = "deg/s" }
 )toml";
 

@@ -28,6 +28,27 @@ TEST_F(Init, LeavesNothingWhereItCannotWrite) {
   }
 }
 
+TEST_F(Init, MapsWhatItRecognisesInTheLog) {
+  const std::string log =
+      file("flight.txt", "clock p (deg/s) q V_mps odd\n0.0 1 0.1 20 5\n0.5 2 0.2 21 5\n1.0 3 0.1 22 6\n");
+  expect_refusal("init aircraft --log " + log + out(),
+                 "flight.txt:1: no time column found among clock, p, q, V_mps, odd");
+  EXPECT_THAT(results(), IsEmpty());
+  ASSERT_EQ(run("init aircraft --log " + log + " --set data.time.column=clock" + out()).exit_code, 0);
+  const std::string study = read_file(in_out("study.toml"));
+  EXPECT_THAT(study, HasSubstr("\ntime.column = \"clock\"\n"));
+  EXPECT_THAT(study, HasSubstr("gyro_x <- p (2 Hz), by its name"));
+  EXPECT_THAT(study, HasSubstr("\ngyro_y = { channel = \"q\", unit = \"?\" }"));
+  EXPECT_THAT(study, HasSubstr("\nairspeed = { channel = \"V_mps\", unit = \"m/s\" }"));
+  EXPECT_THAT(study, HasSubstr("# channels of the log that were not recognised: odd\n"));
+  // A unit that is left open is asked for by its place.
+  const std::string vehicle = " --set subject.builtin=thor";
+  EXPECT_THAT(run("reconstruct " + in_out("study.toml").string() + vehicle + out()).text, HasSubstr("study.toml:"));
+  EXPECT_EQ(run("init vehicle --log " + log + " --set data.time.colum=clock --force" + out()).exit_code, 2);
+  EXPECT_EQ(run("init vehicle --log " + log + " --set data.time.column=clock --force" + out()).exit_code, 0);
+  EXPECT_THAT(run("inspect " + log + " --set data.time.column=clock").text, HasSubstr("gyro_x             <- p"));
+}
+
 TEST_F(Init, KeepsTheStudyThatItCannotReplace) {
   file("study.toml", "mine");
   const std::string here = " --quiet --out " + folder_.string();

@@ -50,6 +50,22 @@ TEST_F(StudyData, NamesTheColumnsOfATableWithoutAHeader) {
   EXPECT_EQ(recording.information.at("date"), "2024-02-11");
 }
 
+TEST_F(StudyData, SaysHowATableIsWritten) {
+  write("run.txt", "Zeit speed\n0,0 1,5\n0,5 2,5\n");
+  EXPECT_THAT(read("file = 'run.txt'\ndelimiter = 'blank'\ndecimal = 'comma'\n").at("speed").value,
+              ElementsAre(1.5, 2.5));
+  EXPECT_THAT(message_of([&] { (void)read("file = 'run.txt'\ndelimiter = 'pipe'\n"); }), HasSubstr("data.delimiter"));
+  EXPECT_THAT(message_of([&] { (void)read("file = 'run.txt'\ndecimal = ';'\n"); }), HasSubstr("data.decimal"));
+  EXPECT_THAT(message_of([&] { (void)read("file = 'run.txt'\npart = 0\n"); }),
+              HasSubstr("data.part: = 0 must be 1 or more"));
+  std::string twice = "time,x\n";
+  for (int k = 0; k < 2; ++k)
+    for (int i = 0; i < 10 + k; ++i) twice += std::to_string(0.1 * i) + "," + std::to_string(k) + "\n";
+  write("twice.csv", twice);
+  EXPECT_EQ(read("file = 'twice.csv'\npart = 1\n").at("x").size(), 10U);
+  EXPECT_EQ(read("file = 'twice.csv'\n").at("x").size(), 11U);
+}
+
 TEST_F(StudyData, RefusesColumnsThatTheTableDoesNotHave) {
   write("run.csv", "0,1,2\n1,1,2\n");
   EXPECT_THAT(message_of([&] { (void)read("file = 'run.csv'\ncolumns = ['time', 'a']\n"); }),

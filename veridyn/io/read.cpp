@@ -14,6 +14,7 @@
 #include "veridyn/io/matlab/mat.hpp"
 #include "veridyn/io/opensim/storage.hpp"
 #include "veridyn/io/packets/packet_log.hpp"
+#include "veridyn/io/tables/csv_folder.hpp"
 #include "veridyn/io/tables/npy.hpp"
 #include "veridyn/io/tables/npz.hpp"
 #include "veridyn/io/ulog/ulog.hpp"
@@ -81,7 +82,8 @@ const char* name_of(Format format) {
 }  // namespace
 
 Log read_log(const std::filesystem::path& path, const ReadOptions& options) {
-  if (std::error_code error; std::filesystem::is_directory(path, error)) return read_npy_folder(path);
+  if (std::error_code error; std::filesystem::is_directory(path, error))
+    return is_csv_folder(path) ? read_csv_folder(path, options.csv) : read_npy_folder(path);
   const MappedFile file(path);
   const std::string_view bytes = file.bytes();
   if (options.packet) return packet_log(*options.packet, bytes, path.string());
@@ -116,13 +118,13 @@ Log read_log(const std::filesystem::path& path, const ReadOptions& options) {
       log = read_ulog(bytes, path.string());
       break;
     case Format::kMat:
-      log = read_mat_file(path);
+      log = read_mat_file(path, options.csv);
       break;
     case Format::kStorage:
       log = read_storage_log(bytes, path.string());
       break;
     case Format::kNpz:
-      log = read_npz(bytes, path.string());
+      log = read_npz(bytes, path.string(), options.csv);
       break;
     case Format::kPackets:
       log = packet_log(*packets_in(bytes), bytes, path.string());

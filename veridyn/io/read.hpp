@@ -12,15 +12,15 @@ namespace veridyn::io {
 
 /// What to do with a file of any format.
 struct ReadOptions {
-  TableOptions csv;
+  TableOptions csv;  ///< of tables: CSV, NumPy arrays, arrays of MATLAB files
   RecordingOptions recording;
   std::optional<PacketLayout> packet;  ///< the file holds such packets, one after the other
 };
 
 /// Reads a log of any known format: ArduPilot DataFlash (.bin) and its text form (.log), PX4 ULog (.ulg), MATLAB
-/// (.mat), OpenSim storage (.sto, .mot), telemetry packets of games, CSV, and folders of NumPy arrays (`npy.hpp`). The
-/// content decides; the name's extension only where the content does not decide, and a name that promises another
-/// format than the content is noted in the damage.
+/// (.mat), OpenSim storage (.sto, .mot), telemetry packets of games, CSV, and folders of CSV or of NumPy arrays
+/// (`npy.hpp`). The content decides; the name's extension only where the content does not decide, and a name that
+/// promises another format than the content is noted in the damage.
 /// @throws InputError when the file is missing, empty, or of no known format.
 [[nodiscard]] Log read_log(const std::filesystem::path& path, const ReadOptions& options = {});
 

@@ -12,6 +12,9 @@
 namespace veridyn::recording {
 namespace {
 
+/// The key of `[data.map]` that is no channel.
+constexpr const char* kUnits = "units";
+
 std::vector<double> shifted(std::span<const double> stamps, double delay_s) {
   std::vector<double> result(stamps.begin(), stamps.end());
   for (double& t : result) t -= delay_s;
@@ -130,8 +133,10 @@ MappedValues map_from_study(const Recording& log, const StudyTable& map, const S
   if (!map.is_table(target.name)) {
     const std::string channel = map.text(target.name);
     const Channel& raw = source_of(log, map, target.name, channel);
-    check_dimension(map, target.name, raw, "", target);
-    return {raw.time, raw.value, channel};
+    const bool bare = raw.unit.same_dimension(Unit{}) && raw.recorded_unit == "1";
+    const std::string unit = bare ? declared_unit(map, target) : std::string();
+    check_dimension(map, target.name, raw, unit, target);
+    return {raw.time, in_si(raw, 0.0, 1.0, unit), channel};
   }
   const StudyTable entry = map.table(target.name);
   const Conversion c = read_conversion(entry, target);
@@ -201,8 +206,18 @@ MappedRecording with_standard_channels(MappedRecording mapped, const Recording& 
     if (channel == nullptr || map.has(target.name)) continue;
     const Unit expected = parse_unit(target.unit);
     if (!channel->unit.same_dimension(expected) && channel->unit.same_dimension(Unit{})) {
-      mapped.notes.push_back(fmt::format("{} has no unit: write {}[{}] in the header, or map it with its unit",
-                                         target.name, target.name, target.unit));
+      const std::string unit = declared_unit(map, target);
+      if (unit.empty()) {
+        mapped.notes.push_back(
+            fmt::format("{} has no unit: write {}[{}] in the header, or map it with its unit, or "
+                        "declare units = [...] in [data.map]",
+                        target.name, target.name, target.unit));
+        continue;
+      }
+      mapped.recording.add(make_channel(target.name, target.unit, channel->time, in_si(*channel, 0.0, 1.0, unit)));
+      mapped.origins.push_back(
+          {target.name, target.name, channel->rate_Hz(), fmt::format("in {}, as the study declares", unit)});
+      mapped.log_kind = "standard names";
       continue;
     }
     if (!channel->unit.same_dimension(expected)) {
@@ -216,8 +231,25 @@ MappedRecording with_standard_channels(MappedRecording mapped, const Recording& 
   return mapped;
 }
 
+std::string declared_unit(const StudyTable& map, const StandardChannel& target) {
+  if (!map.has(kUnits)) return {};
+  if (map.is_text(kUnits) && map.text(kUnits) == "SI") return target.unit;
+  for (const std::string& unit : map.texts(kUnits)) {
+    try {
+      if (parse_unit(unit).same_dimension(parse_unit(target.unit))) return unit;
+    } catch (const InputError& wrong) {
+      map.fail(kUnits, wrong.what());
+    }
+  }
+  return {};
+}
+
 void check_channel_map(const StudyTable& map, std::span<const StandardChannel> standard) {
   for (const std::string& name : map.keys()) {
+    if (name == kUnits) {
+      static_cast<void>(declared_unit(map, {"", "1"}));
+      continue;
+    }
     static_cast<void>(standard_channel(map, name, standard));
     if (!map.is_table(name)) {
       static_cast<void>(map.text(name));
@@ -237,7 +269,9 @@ void check_channel_map(const StudyTable& map, std::span<const StandardChannel> s
 MappedRecording with_channel_map(MappedRecording mapped, const Recording& log,
                                  std::span<const StandardChannel> standard, const StudyTable& map) {
   std::vector<std::string> withdrawn;
+  static_cast<void>(declared_unit(map, {"", "1"}));
   for (const std::string& name : map.keys()) {
+    if (name == kUnits) continue;
     const StandardChannel& channel = standard_channel(map, name, standard);
     if (map.is_text(name) && map.text(name) == "none") {
       std::erase_if(mapped.origins, [&](const ChannelOrigin& origin) { return origin.channel == name; });

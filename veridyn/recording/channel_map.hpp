@@ -50,12 +50,19 @@ struct MappedRecording {
 ///     aileron  = { channels = ["da_l", "da_r"], weights = [0.5, -0.5], unit = "rad" }
 ///     elevator = { switch = "mode", cases = { 1 = "de_in", 2 = "de" }, unit = "rad" }
 ///
-/// value = scale * (raw - zero), in `unit` where the log has none; `delay` is how late the sensor reports and is taken
-/// off its stamps. `"none"` takes a channel away.
+///     units    = ["deg", "deg/s", "kt"]
+///
+/// `units` declares those of channels for which the log has none: the one of the kind that is needed, or all in SI
+/// (`units = "SI"`). value = scale * (raw - zero), in `unit` where the log has none; `delay` is how late the sensor
+/// reports and is taken off its stamps. `"none"` takes a channel away.
 /// @throws InputError for an unknown standard name (nearest suggested) or a source that the log lacks (lists what it
 /// has).
 [[nodiscard]] MappedRecording with_channel_map(MappedRecording mapped, const Recording& log,
                                                std::span<const StandardChannel> standard, const StudyTable& map);
+
+/// The unit that `units` of `[data.map]` declares for channels of this kind that have none; empty: none is declared.
+/// @throws InputError for an unknown unit
+[[nodiscard]] std::string declared_unit(const StudyTable& map, const StandardChannel& target);
 
 /// Reads the keys of `[data.map]` where there is no log to apply them to. @throws InputError for an unknown standard
 /// name and for values of the wrong kind.

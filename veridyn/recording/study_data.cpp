@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -13,20 +12,10 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/packets/known_packets.hpp"
 #include "veridyn/io/read.hpp"
+#include "veridyn/io/tables/csv_folder.hpp"
 
 namespace veridyn::recording {
 namespace {
-
-/// "vehicle_attitude_0" -> "vehicle_attitude"; "sensor_baro_1" -> "sensor_baro[1]"; others as they are.
-std::string table_name(const std::filesystem::path& path) {
-  std::string stem = path.stem().string();
-  const std::size_t underscore = stem.rfind('_');
-  if (underscore == std::string::npos || underscore + 2 != stem.size()) return stem;
-  const char digit = stem.back();
-  if (std::isdigit(static_cast<unsigned char>(digit)) == 0) return stem;
-  std::string topic = stem.substr(0, underscore);
-  return digit == '0' ? topic : fmt::format("{}[{}]", topic, digit);
-}
 
 void merge(Recording& whole, const Recording& part, const std::string& prefix) {
   for (Channel channel : part.channels()) {
@@ -40,6 +29,23 @@ void merge(Recording& whole, const Recording& part, const std::string& prefix) {
     whole.warnings.push_back(prefix.empty() ? warning : fmt::format("{}: {}", prefix, warning));
   }
   if (part.frame != Frame::kUnspecified) whole.frame = part.frame;
+}
+
+/// How a table is written.
+void read_style(const StudyTable& data, io::TableOptions& options) {
+  if (data.has("delimiter")) {
+    const std::vector<std::string> names{"comma", "semicolon", "tab", "blank"};
+    const std::string name = data.choice_or("delimiter", names, "comma");
+    options.delimiter = name == "comma" ? ',' : name == "semicolon" ? ';' : name == "tab" ? '\t' : ' ';
+  }
+  if (data.has("decimal")) {
+    const std::vector<std::string> names{"point", "comma"};
+    options.decimal = data.choice_or("decimal", names, "point") == "comma" ? ',' : '.';
+  }
+  if (!data.has("part")) return;
+  const long long part = data.integer("part");
+  if (part < 1) data.fail("part", fmt::format("= {} must be 1 or more", part));
+  options.part = static_cast<std::size_t>(part);
 }
 
 /// Where the stamps of a table are.
@@ -122,12 +128,13 @@ std::optional<io::PacketLayout> read_packet(const StudyTable& data) {
 
 namespace {
 
-/// One file, with the keys that `own` has and else those of `shared`.
-Recording read_file(const std::filesystem::path& path, const StudyTable& own, const StudyTable& shared) {
+/// How to read one file, with the keys that `own` has and else those of `shared`.
+io::ReadOptions read_options(const std::filesystem::path& path, const StudyTable& own, const StudyTable& shared) {
   const StudyTable time = table_with("time", own, shared).table_or_empty("time");
   const StudyTable& columns = table_with("columns", own, shared);
-  const std::string name = table_name(path);
+  const std::string name = io::table_name(path);
   io::ReadOptions options;
+  for (const StudyTable* table : {&shared, &own}) read_style(*table, options.csv);
   if (columns.has("columns")) options.csv.columns = columns.texts("columns");
   if (time.has(name)) {
     read_time(time.table(name), options.csv);
@@ -135,7 +142,12 @@ Recording read_file(const std::filesystem::path& path, const StudyTable& own, co
     read_time(time, options.csv);
   }
   options.packet = read_packet(table_with("packet", own, shared));
-  return io::read_recording(path, options);
+  return options;
+}
+
+/// One file, read as these say.
+Recording read_file(const std::filesystem::path& path, const StudyTable& own, const StudyTable& shared) {
+  return io::read_recording(path, read_options(path, own, shared));
 }
 
 /// Reads the keys of one recording, or of all, without opening a file.
@@ -148,10 +160,11 @@ void check_recording_keys(const StudyTable& data, std::span<const StandardChanne
   const StudyTable time = data.table_or_empty("time");
   io::TableOptions options;
   read_time(time, options);
+  read_style(data, options);
   for (const char* key : {"file", "files", "runs", "holdout_runs"}) {
     if (!data.has(key)) continue;
     for (const std::filesystem::path& path : data.files(key)) {
-      const std::string name = table_name(path);
+      const std::string name = io::table_name(path);
       if (time.has(name)) read_time(time.table(name), options);
     }
   }
@@ -169,6 +182,7 @@ Recording read_one(const StudyTable& data, const StudyTable& shared) {
   Recording whole;
   std::vector<std::string> names;
   for (const std::filesystem::path& path : paths) names.push_back(path.filename().string());
+  const std::string prefix = io::log_prefix(paths);
   whole.source = paths.size() == 1 ? paths.front().string() : fmt::format("{}", fmt::join(names, ", "));
   for (const std::filesystem::path& path : paths) {
     const Recording part = read_file(path, data, shared);
@@ -177,7 +191,7 @@ Recording read_one(const StudyTable& data, const StudyTable& shared) {
       whole = part;
       whole.source = source;
     } else {
-      merge(whole, part, table_name(path));
+      merge(whole, part, io::table_name(path, prefix));
     }
   }
   const bool bounded = data.has("from") || data.has("to");
@@ -254,6 +268,10 @@ const StudyTable& table_with(std::string_view key, const StudyTable& own, const 
 }
 
 bool names_runs(const StudyTable& data) { return data.has("runs") || data.has("holdout_runs") || data.has("run"); }
+
+io::ReadOptions read_study_options(const StudyTable& data, const std::filesystem::path& path) {
+  return read_options(path, data, data);
+}
 
 Recording read_study_file(const StudyTable& data, const std::filesystem::path& path) {
   return read_file(path, data, data);

@@ -8,6 +8,7 @@
 
 #include "veridyn/core/recording.hpp"
 #include "veridyn/core/study.hpp"
+#include "veridyn/io/read.hpp"
 #include "veridyn/recording/channel_map.hpp"
 
 namespace veridyn::recording {
@@ -65,6 +66,11 @@ struct StudyRecording {
 /// Reads the same keys, and those of `[data.map]`, without opening a file: for commands that have no use for the
 /// recording, so that they refuse a misspelt key too. @throws InputError for values of the wrong kind.
 void check_study_data(const StudyTable& data, std::span<const StandardChannel> standard);
+
+/// How `[data]` says that a file is to be read: `time`, `columns`, `delimiter` (",", ";", "tab", "blank"), `decimal`
+/// (".",
+/// ","), `part` (of a table whose clock restarts, from 1), `packet`. @throws InputError for values of the wrong kind.
+[[nodiscard]] io::ReadOptions read_study_options(const StudyTable& data, const std::filesystem::path& path);
 
 /// One file, read as `[data.time]` says; for domains whose `[data]` names files under other keys.
 [[nodiscard]] Recording read_study_file(const StudyTable& data, const std::filesystem::path& path);

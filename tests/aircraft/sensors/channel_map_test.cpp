@@ -71,6 +71,25 @@ TEST(ChannelMap, SaysWhatIsWrongWithAMapping) {
               HasSubstr("study.toml:2: map.alpha.unit: unit 'kg' is a mass [kg], expected an angle [rad]"));
 }
 
+TEST(ChannelMap, KnowsTheNamesOfTheLiteratureWhereTheUnitIsKnown) {
+  const MappedRecording mapped = map(log_with({channel("p", "rad/s", {0.1, 0.2}), channel("q", "1", {0.1, 0.2}),
+                                               channel("de", "rad", {0.1, 0.2}), channel("V", "m/s", {30, 31})}));
+  EXPECT_THAT(mapped.recording.names(), ElementsAre("gyro_x", "airspeed", "elevator"));
+  EXPECT_THAT(mapped.notes, ::testing::Contains(HasSubstr("without a unit and so not taken: q (gyro_y)")));
+}
+
+TEST(ChannelMap, TakesUnitsThatTheStudyDeclares) {
+  const Recording log =
+      log_with({channel("p", "1", {90, 180}), channel("alpha", "1", {9, 18}), channel("az", "1", {-1, -2})});
+  const MappedRecording mapped = map(log, "units = [\"deg\", \"deg/s\"]\n");
+  EXPECT_NEAR(mapped.recording.at("gyro_x").value[1], kPi, 1e-12);
+  EXPECT_NEAR(mapped.recording.at("alpha").value[1], 0.1 * kPi, 1e-12);
+  EXPECT_FALSE(mapped.recording.has("accel_z"));
+  EXPECT_EQ(map(log, "units = \"SI\"\n").recording.at("accel_z").value[1], -2.0);
+  EXPECT_NEAR(map(log, "units = \"deg/s\"\ngyro_z = \"p\"\n").recording.at("gyro_z").value[0], 0.5 * kPi, 1e-12);
+  EXPECT_THAT(why([&] { static_cast<void>(map(log, "units = [\"degs\"]\n")); }), HasSubstr("map.units"));
+}
+
 TEST(ChannelMap, RefusesAFrameWithZUp) {
   Recording log = log_with({channel("airspeed", "m/s", {1, 2})});
   log.frame = Frame::kFlu;

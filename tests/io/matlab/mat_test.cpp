@@ -21,6 +21,45 @@ TEST(Mat, MakesSeriesOfVectorsBesideATimeAndTablesOfTheRest) {
   expect_small_mat(read_mat(testing::small_mat(), "small.mat"));
 }
 
+TEST(Mat, NamesTheColumnsOfAMatrix) {
+  // `table` has two rows of three columns: 1 3 5 and 2 4 6.
+  const Recording made =
+      to_recording(read_mat(testing::small_mat(), "small.mat", {.columns = {"p[deg/s]", "q", "V"}, .rate = 10.0}));
+  EXPECT_THAT(made.names(), ElementsAre("p", "q", "V"));
+  EXPECT_NEAR(made.at("p").value[1], 2.0 * std::numbers::pi / 180.0, 1e-15);
+  EXPECT_THAT(made.at("V").times(), ElementsAre(0.0, 0.1));
+  const Recording stamped = to_recording(read_mat(testing::small_mat(), "small.mat", {.columns = {"t", "q", "V"}}));
+  EXPECT_THAT(stamped.at("q").times(), ElementsAre(1.0, 2.0));
+  EXPECT_EQ(message_of([] {
+              (void)read_mat(testing::small_mat(), "small.mat", {.columns = {"t", "q"}});
+            }),
+            "small.mat: `columns` names 2 columns, and no matrices have as many: it holds table (2 x 3)");
+}
+
+TEST(Mat, SaysWhatAFileHoldsWhereNothingIsASeries) {
+  const std::string small = testing::small_mat();
+  const std::size_t flight = 8 + static_cast<unsigned char>(small[132]) + 256U * static_cast<unsigned char>(small[133]);
+  const Log log = read_mat(small.substr(0, 128) + small.substr(128 + flight), "table.mat");
+  ASSERT_EQ(log.damage.notes.size(), 1U);
+  EXPECT_THAT(log.damage.notes[0], HasSubstr("the file holds table (2 x 3). Name the stamps: time = { column = "));
+  EXPECT_THAT(message_of([&] { (void)read_mat(small, "small.mat", {.time_column = "clock"}); }),
+              HasSubstr("small.mat: holds no vector 'clock' for the time"));
+}
+
+TEST(Mat, SaysHowToSaveAnObjectThatOnlyMatlabReads) {
+  const auto element = [](std::uint32_t type, std::string data) {
+    const std::string tag = testing::pack(type, static_cast<std::uint32_t>(data.size()));
+    data.resize((data.size() + 7) / 8 * 8, '\0');
+    return tag + data;
+  };
+  const std::string object = element(14, element(6, testing::pack(std::uint32_t{17}, std::uint32_t{0})) +
+                                             element(1, "tt") + element(1, "MCOS") + element(1, "timetable"));
+  const Log log = read_mat(testing::small_mat() + object, "tt.mat");
+  EXPECT_THAT(log.damage.notes,
+              ElementsAre("variable 'tt' is a timetable, which only MATLAB reads: save it as a struct, s = "
+                          "table2struct(timetable2table(tt), 'ToScalar', true), or by writetimetable(tt, 'log.csv')"));
+}
+
 TEST(Mat, SaysWhatIsWrongWithAFileThatIsNone) {
   EXPECT_THAT(message_of([] { (void)read_mat(std::string(200, 'x'), "x.mat"); }),
               "x.mat: not a MATLAB file of version 5 to 7.3 (save it with '-v7'; version 4 is not read)");

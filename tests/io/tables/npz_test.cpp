@@ -66,6 +66,19 @@ std::string drive(bool deflate) {
                  deflate);
 }
 
+TEST(Npz, FindsStampsByTheirNameOrAsTheStudySays) {
+  const std::string bytes = archive({{"Time_ms.npy", array_file({0, 20, 40}, "(3,)")},
+                                     {"clock.npy", array_file({1, 2, 3}, "(3,)")},
+                                     {"p.npy", array_file({5, 6, 7}, "(3,)")}},
+                                    true);
+  const auto times = [&](const TableOptions& options) { return *read_npz(bytes, "a.npz", options).topics[0].time; };
+  EXPECT_THAT(times({}), ::testing::ElementsAre(0.0, 0.02, 0.04));
+  EXPECT_THAT(times({.time_column = "clock", .time_unit = "s"}), ::testing::ElementsAre(1.0, 2.0, 3.0));
+  EXPECT_THAT(times({.rate = 2.0}), ::testing::ElementsAre(0.0, 0.5, 1.0));
+  EXPECT_THAT(why([&] { static_cast<void>(times({.time_column = "cloc"})); }),
+              HasSubstr("a.npz: no column 'cloc' for the time (did you mean 'clock'?)"));
+}
+
 TEST(Npz, ArraysWithStampsAreChannels) {
   for (const bool deflate : {false, true}) {
     const Log log = read_npz(drive(deflate), "drive.npz");

@@ -11,6 +11,16 @@ using testing::changed;
 using testing::prepared;
 using testing::recorded;
 
+TEST(DriveLog, TakesWheelSpeedsInKilometresPerHourForThoseOfTheTread) {
+  Recording log;
+  const TimeBase time = make_time_base({0.0, 0.1});
+  log.add(make_channel("wheel_speed_rl", "m/s", time, {10.0, 11.0}));
+  log.add(make_channel("wheel_speed_rr", "rad/s", time, {30.0, 31.0}));
+  log.add(make_channel("YawRate", "rad/s", time, {0.1, 0.2}));
+  const recording::MappedRecording mapped = map_drive_channels(log, StudyTable("data.map"));
+  EXPECT_EQ(mapped.recording.names(), (std::vector<std::string>{"wheel_speed_rr", "wheel_velocity_rl", "yaw_rate"}));
+}
+
 TEST(DriveLog, TurnsAFrdRecordingIntoFlu) {
   const Recording flu = recorded();
   Recording frd = flu;

@@ -62,6 +62,20 @@ TEST(DriveSignals, TakesTheHandWheelAndWheelSpeeds) {
   }
 }
 
+TEST(DriveSignals, TakesSpeedFromTheTreadsOfTheWheels) {
+  const Recording r = recorded();
+  const Channel& u = r.at("speed");
+  Recording treads = without(r, "speed");
+  for (const auto& [name, more] : {std::pair("wheel_velocity_rl", 0.5), std::pair("wheel_velocity_rr", -0.5)}) {
+    std::vector<double> velocity = u.value;
+    for (double& v : velocity) v += more;
+    treads.add(make_channel(name, "m/s", u.time, velocity));
+  }
+  const DriveSignals a = prepared(r), b = prepared(treads);
+  for (std::size_t k = 0; k < a.size(); k += 100)
+    EXPECT_NEAR(a[DriveSignal::kSpeed].value[k], b[DriveSignal::kSpeed].value[k], 1e-9);
+}
+
 TEST(DriveSignals, TakesGravityOffByRollOrByItsGradient) {
   const Recording r = recorded();
   const double gradient = 0.0089, g = 9.80665;

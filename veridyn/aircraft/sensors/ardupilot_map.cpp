@@ -1,7 +1,10 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <array>
 #include <cmath>
+#include <optional>
+#include <string_view>
+#include <utility>
 
 #include "veridyn/aircraft/sensors/channel_rules.hpp"
 #include "veridyn/core/constants.hpp"
@@ -33,6 +36,12 @@ const std::vector<ChannelRule>& ardupilot_rules() {
       {"roll", "NKF1.Roll", "deg", "autopilot's EKF2"},
       {"pitch", "NKF1.Pitch", "deg", "autopilot's EKF2"},
       {"yaw", "NKF1.Yaw", "deg", "autopilot's EKF2"},
+      {"vel_north", "XKF1.VN", "m/s", "autopilot's EKF3, since GPS gives none"},
+      {"vel_east", "XKF1.VE", "m/s", "autopilot's EKF3, since GPS gives none"},
+      {"vel_down", "XKF1.VD", "m/s", "autopilot's EKF3, since GPS gives none"},
+      {"vel_north", "NKF1.VN", "m/s", "autopilot's EKF2, since GPS gives none"},
+      {"vel_east", "NKF1.VE", "m/s", "autopilot's EKF2, since GPS gives none"},
+      {"vel_down", "NKF1.VD", "m/s", "autopilot's EKF2, since GPS gives none"},
       {"lat", "GPS.Lat", "deg", ""},
       {"lon", "GPS.Lng", "deg", ""},
       {"alt", "BARO.Alt", "m", "barometric"},
@@ -73,19 +82,18 @@ double parameter(const Recording& log, const std::string& name, double otherwise
   return found == log.parameters.end() ? otherwise : found->second;
 }
 
-/// A servo output in microseconds as deflection: -1..1 about its trim, times the full throw (throttle: 0..1).
-void map_servo(MapBuilder& builder, const std::string& channel, int function, int usual_output, double full_throw) {
+/// The position of a servo: -1..1 about its trim, in the sense of the autopilot's command; of a throttle 0..1.
+struct ServoPosition {
+  TimeBase time;
+  std::vector<double> value;
+  std::string source;
+};
+
+std::optional<ServoPosition> servo_position(MapBuilder& builder, int output, bool throttle) {
   const Recording& log = builder.log();
-  int output = 0;
-  for (int n = 1; n <= 16 && output == 0; ++n) {
-    if (parameter(log, fmt::format("SERVO{}_FUNCTION", n), -1.0) == function) output = n;
-  }
-  const bool assumed = output == 0;
-  if (assumed) output = usual_output;
   const std::string name = fmt::format("RCOU.C{}", output);
-  const std::string old_name = fmt::format("RCOU.Ch{}", output);
-  const Channel* raw = builder.alive(log.has(name) ? name : old_name);
-  if (raw == nullptr || builder.mapped(channel)) return;
+  const Channel* raw = builder.alive(log.has(name) ? name : fmt::format("RCOU.Ch{}", output));
+  if (raw == nullptr) return std::nullopt;
   const bool modern = log.parameters.contains(fmt::format("SERVO{}_MIN", output));
   const std::string prefix = fmt::format("{}{}_", modern ? "SERVO" : "RC", output);
   const double low = parameter(log, prefix + "MIN", 1000.0);
@@ -96,19 +104,95 @@ void map_servo(MapBuilder& builder, const std::string& channel, int function, in
   const double sign = reversed ? -1.0 : 1.0;
   // Logs that know their units give pulse lengths in seconds here, parameters are in microseconds.
   const double to_us = raw->unit.same_dimension(parse_unit("s")) ? 1e6 : 1.0;
-  std::vector<double> value(raw->size());
-  const bool throttle = channel == "throttle";
-  for (std::size_t i = 0; i < value.size(); ++i) {
+  ServoPosition position{raw->time, std::vector<double>(raw->size()), raw->name};
+  for (std::size_t i = 0; i < position.value.size(); ++i) {
     const double pulse = to_us * raw->value[i];
     if (throttle) {
-      value[i] = reversed ? (high - pulse) / (high - low) : (pulse - low) / (high - low);
+      position.value[i] = reversed ? (high - pulse) / (high - low) : (pulse - low) / (high - low);
     } else {
-      value[i] = sign * full_throw * (pulse - trim) / (pulse >= trim ? high - trim : trim - low);
+      position.value[i] = sign * (pulse - trim) / (pulse >= trim ? high - trim : trim - low);
     }
   }
-  builder.put(channel, throttle ? "1" : "rad", raw->time, std::move(value), raw->name,
-              assumed ? fmt::format("servo {} assumed: the log has no SERVOn_FUNCTION", output)
-                      : fmt::format("servo {} by SERVO{}_FUNCTION", output, output));
+  return position;
+}
+
+/// Outputs with a function by SERVOn_FUNCTION.
+std::vector<int> outputs_with(const Recording& log, int function) {
+  constexpr int kOutputs = 32;
+  std::vector<int> outputs;
+  for (int n = 1; n <= kOutputs; ++n)
+    if (parameter(log, fmt::format("SERVO{}_FUNCTION", n), -1.0) == function) outputs.push_back(n);
+  return outputs;
+}
+
+/// The weighted sum of servos as deflection of `channel`.
+void put_servos(MapBuilder& builder, const std::string& channel,
+                const std::vector<std::pair<ServoPosition, double>>& servos, double full_throw,
+                const std::string& note) {
+  const TimeBase time = servos.front().first.time;
+  std::vector<double> value(time->size(), 0.0);
+  std::string sources;
+  for (const auto& [servo, weight] : servos) {
+    const std::vector<double> at =
+        servo.time == time ? servo.value : interpolated(make_channel("servo", "1", servo.time, servo.value), *time);
+    for (std::size_t i = 0; i < value.size(); ++i) value[i] += full_throw * weight * at[i];
+    sources += (sources.empty() ? "" : ", ") + servo.source;
+  }
+  builder.put(channel, channel == "throttle" ? "1" : "rad", time, std::move(value), sources, note);
+}
+
+/// All servos of one function: both ailerons count half each.
+void map_servo(MapBuilder& builder, const std::string& channel, int function, int usual_output, double full_throw) {
+  if (builder.mapped(channel)) return;
+  std::vector<int> outputs = outputs_with(builder.log(), function);
+  // A log that says what its servos do, says that this one is not there.
+  const bool assumed = outputs.empty() && !builder.log().parameters.contains("SERVO1_FUNCTION");
+  if (assumed) outputs = {usual_output};
+  std::vector<std::pair<ServoPosition, double>> servos;
+  std::vector<std::string> names;
+  for (const int output : outputs) {
+    auto position = servo_position(builder, output, channel == "throttle");
+    if (!position) continue;
+    servos.emplace_back(std::move(*position), 1.0);
+    names.push_back(fmt::format("SERVO{}_FUNCTION", output));
+  }
+  if (servos.empty()) return;
+  for (auto& [servo, weight] : servos) weight = 1.0 / static_cast<double>(servos.size());
+  put_servos(builder, channel, servos, full_throw,
+             assumed ? fmt::format("servo {} assumed: the log has no SERVOn_FUNCTION", usual_output)
+                     : fmt::format("by {}{}", fmt::join(names, ", "), servos.size() > 1 ? ", their mean" : ""));
+}
+
+/// Two surfaces that the autopilot mixes of two commands (channel_function_mixer in ArduPlane's servos.cpp):
+/// left = common - differential and right = common + differential of elevons; of a V-tail the other way round.
+struct MixedPair {
+  int left_function;
+  int right_function;
+  std::string_view what;
+  std::string_view common;        ///< channel of half the sum
+  std::string_view differential;  ///< channel of half the difference
+  double sign;                    ///< of right - left
+};
+
+void map_pair(MapBuilder& builder, const MixedPair& pair, double common_throw, double differential_throw) {
+  const std::vector<int> left = outputs_with(builder.log(), pair.left_function);
+  const std::vector<int> right = outputs_with(builder.log(), pair.right_function);
+  if (left.empty() && right.empty()) return;
+  const auto first = left.empty() ? std::nullopt : servo_position(builder, left.front(), false);
+  const auto second = right.empty() ? std::nullopt : servo_position(builder, right.front(), false);
+  if (!first || !second) {
+    builder.note(fmt::format("only one of the {} is recorded, of which both are needed: not used", pair.what));
+    return;
+  }
+  const std::string by =
+      fmt::format("of {} SERVO{}_FUNCTION and SERVO{}_FUNCTION", pair.what, left.front(), right.front());
+  if (!builder.mapped(pair.common)) {
+    put_servos(builder, std::string(pair.common), {{*first, 0.5}, {*second, 0.5}}, common_throw, "half the sum " + by);
+  }
+  if (!builder.mapped(pair.differential)) {
+    put_servos(builder, std::string(pair.differential), {{*first, -0.5 * pair.sign}, {*second, 0.5 * pair.sign}},
+               differential_throw, "half the difference " + by);
+  }
 }
 
 }  // namespace
@@ -121,13 +205,20 @@ bool is_ardupilot(const Recording& log) {
 }
 
 void map_ardupilot(MapBuilder& builder, const SurfaceThrows& throws) {
-  builder.apply(ardupilot_rules());
   map_gps_velocity(builder);
+  builder.apply(ardupilot_rules());
+  // Elevons 77 and 78, V-tail 79 and 80.
+  map_pair(builder, {77, 78, "elevons", "elevator", "aileron", 1.0}, throws.elevator, throws.aileron);
+  map_pair(builder, {79, 80, "V-tail", "elevator", "rudder", -1.0}, throws.elevator, throws.rudder);
   // SERVOn_FUNCTION: 4 aileron, 19 elevator, 21 rudder, 70 throttle (ArduPilot parameter list).
   map_servo(builder, "aileron", 4, 1, throws.aileron);
   map_servo(builder, "elevator", 19, 2, throws.elevator);
   map_servo(builder, "throttle", 70, 3, 1.0);
   map_servo(builder, "rudder", 21, 4, throws.rudder);
+  if (!outputs_with(builder.log(), 24).empty() && outputs_with(builder.log(), 4).empty()) {
+    builder.note(
+        "flaperons (SERVOn_FUNCTION 24 and 25) are mixed in other ways by each release: map aileron in [data.map]");
+  }
   if (!throws.known && (builder.mapped("elevator") || builder.mapped("aileron"))) {
     builder.note(
         "surface throws are not in the subject: servo positions are scaled to 0.35 rad, so control derivatives are "

@@ -76,6 +76,7 @@ MappedRecording map_channels(const Recording& log, const StudyTable& map, const 
     mapped.log_kind = "PX4";
     internal::map_px4(builder, throws);
   }
+  mapped = recording::with_recognised_channels(std::move(mapped), log, standard_channels(), channel_aliases(), map);
   mapped = recording::with_channel_map(std::move(mapped), log, standard_channels(), map);
   return mapped;
 }

@@ -7,6 +7,7 @@
 #include "veridyn/core/recording.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/recording/channel_map.hpp"
+#include "veridyn/recording/channel_recognition.hpp"
 
 namespace veridyn::aircraft {
 
@@ -29,10 +30,15 @@ struct SurfaceThrows {
 /// `px4_map.cpp`; channels that already bear standard names are kept; keys of `map` (the study's `[data.map]`, see
 /// recording::with_channel_map) come last and win.
 ///
+/// What these leave is taken by the names of the literature (`channel_aliases`) where the unit is known.
+///
 /// A source that never changes (an unconnected sensor) is passed over, with a note.
 /// @throws InputError for an unknown standard name (nearest suggested) or a source that the log lacks (lists what it
 /// has).
 [[nodiscard]] MappedRecording map_channels(const Recording& log, const StudyTable& map, const SurfaceThrows& throws);
+
+/// Names of the literature and of other programs for standard channels: "p", "theta", "de", "VTAS".
+[[nodiscard]] std::span<const recording::ChannelAlias> channel_aliases();
 
 /// All standard names of aircraft recordings with their SI units.
 [[nodiscard]] std::span<const StandardChannel> standard_channels();

@@ -1,6 +1,7 @@
 #include "veridyn/io/matlab/mat.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
@@ -12,18 +13,13 @@
 #include "veridyn/io/log/mapped_file.hpp"
 #include "veridyn/io/log/time_stamps.hpp"
 #include "veridyn/io/matlab/mat_value.hpp"
+#include "veridyn/io/tables/csv_header.hpp"
+#include "veridyn/io/tables/time_column.hpp"
 
 namespace veridyn::io {
 namespace {
 
 constexpr std::string_view kMatlab73 = "MATLAB 7.3 MAT-file";
-
-struct TimeName {
-  std::string_view name;
-  double scale;
-};
-constexpr TimeName kTimeNames[] = {{"time", 1.0},  {"t", 1.0},       {"Time", 1.0},    {"time_s", 1.0},    {"t_s", 1.0},
-                                   {"TimeS", 1.0}, {"TimeMS", 1e-3}, {"TimeUS", 1e-6}, {"timestamp", 1e-6}};
 
 bool is_vector(const MatValue& value) {
   return value.kind == MatValue::Kind::kNumbers && value.numbers.size() > 1 &&
@@ -56,22 +52,156 @@ void set_series(LogTopic& topic, std::vector<double> stamps, std::vector<LogFiel
 /// View of the variables of a file, of which it builds the topics of a log.
 class Builder {
  public:
-  explicit Builder(Log& log) : log_(log) { file_.kind = MatValue::Kind::kStruct; }
+  Builder(Log& log, const TableOptions& options) : log_(log), options_(options) {
+    file_.kind = MatValue::Kind::kStruct;
+  }
 
   void take(MatValue&& variable) {
     if (variable.kind == MatValue::Kind::kOther) {
-      log_.damage.notes.push_back(fmt::format("variable '{}' is of a kind that is not read", variable.name));
+      log_.damage.notes.push_back(not_read(variable));
       return;
     }
     file_.items.push_back(std::move(variable));
   }
 
   void finish() {
+    if (!options_.columns.empty()) {
+      take_named_columns();
+      return;
+    }
     take_labelled();
     take_struct(file_, "", 0);
+    if (!options_.time_column.empty() && !time_found_) {
+      throw InputError(log_.source, fmt::format("holds no vector '{}' for the time; it holds {}", options_.time_column,
+                                                held_.empty() ? "other series" : held()));
+    }
+    const bool series =
+        std::any_of(log_.topics.begin(), log_.topics.end(), [](const LogTopic& t) { return !t.schema; });
+    if (series || held_.empty()) return;
+    log_.damage.notes.push_back(fmt::format(
+        "no vector of stamps was found, so nothing is a series; the file holds {}. Name the stamps: time = {{ column = "
+        "\"...\" }} in [data]; or, of rows without stamps, the rate: time = {{ rate = \"... Hz\" }}; columns = [...] "
+        "names those of a matrix",
+        held()));
   }
 
  private:
+  static std::string not_read(const MatValue& variable) {
+    const bool table = variable.class_name == "table" || variable.class_name == "timetable";
+    if (variable.class_name.empty()) return fmt::format("variable '{}' is of a kind that is not read", variable.name);
+    if (!table) {
+      return fmt::format(
+          "variable '{}' is an object of class {}, which only MATLAB reads: save what it holds as a struct",
+          variable.name, variable.class_name);
+    }
+    return fmt::format(
+        "variable '{0}' is a {1}, which only MATLAB reads: save it as a struct, s = table2struct({2}, 'ToScalar', "
+        "true), "
+        "or by {3}({0}, 'log.csv')",
+        variable.name, variable.class_name,
+        variable.class_name == "table" ? variable.name : fmt::format("timetable2table({})", variable.name),
+        variable.class_name == "table" ? "writetable" : "writetimetable");
+  }
+
+  /// What was found without stamps.
+  [[nodiscard]] std::string held() const {
+    constexpr std::size_t kListed = 20;
+    const std::vector<std::string> first(held_.begin(), held_.begin() + signed_index(std::min(kListed, held_.size())));
+    return fmt::format("{}{}", fmt::join(first, ", "),
+                       held_.size() > kListed ? fmt::format(" and {} more", held_.size() - kListed) : "");
+  }
+
+  static std::string in_words(const std::string& path, const MatValue& value) {
+    return fmt::format("{} ({})", path, fmt::join(value.extents, " x "));
+  }
+
+  /// The matrix with as many columns as the options name.
+  void take_named_columns() {
+    const std::size_t count = options_.columns.size();
+    std::vector<MatValue*> fitting;
+    for (MatValue& value : file_.items) {
+      if (value.kind == MatValue::Kind::kNumbers) held_.push_back(in_words(value.name, value));
+      if (is_matrix(value) && value.extents[1] == count && value.extents[0] > 1) fitting.push_back(&value);
+    }
+    if (fitting.size() != 1) {
+      throw InputError(log_.source,
+                       fmt::format("`columns` names {} columns, and {} matrices have as many: it holds {}", count,
+                                   fitting.empty() ? std::string("no") : std::to_string(fitting.size()),
+                                   held_.empty() ? "no numbers" : held()));
+    }
+    MatValue& matrix = *fitting.front();
+    const std::size_t rows = matrix.extents[0];
+    std::vector<internal::Header> headers;
+    std::vector<std::string> names;
+    for (const std::string& column : options_.columns) {
+      headers.push_back(internal::split_header(column, true, log_.source));
+      names.push_back(headers.back().name);
+    }
+    const auto column_of = [&](std::size_t k) {
+      const auto begin = matrix.numbers.begin() + signed_index(k * rows);
+      return std::vector<double>(begin, begin + signed_index(rows));
+    };
+    std::optional<std::size_t> time;
+    if (!(options_.rate > 0.0)) {
+      time = internal::find_time_column(names, options_, log_.source);
+      if (!time)
+        throw InputError(log_.source,
+                         "none of `columns` is the time; name one so, or give time = { rate = \"... Hz\" }");
+    }
+    LogTopic topic;
+    std::vector<LogField> fields;
+    std::vector<std::vector<double>> columns;
+    for (std::size_t k = 0; k < count; ++k) {
+      if (time == k) continue;
+      fields.push_back({headers[k].name, headers[k].unit.empty() ? "1" : headers[k].unit, 1.0, {}, {}});
+      columns.push_back(column_of(k));
+    }
+    std::vector<double> stamps = time ? column_of(*time) : made_stamps(rows);
+    if (time) to_seconds(headers[*time], stamps);
+    set_series(topic, std::move(stamps), std::move(fields), std::move(columns));
+    log_.topics.push_back(std::move(topic));
+  }
+
+  [[nodiscard]] std::vector<double> made_stamps(std::size_t rows) const {
+    std::vector<double> stamps(rows);
+    for (std::size_t i = 0; i < rows; ++i) stamps[i] = static_cast<double>(i) / options_.rate;
+    return stamps;
+  }
+
+  void to_seconds(const internal::Header& header, std::vector<double>& stamps) {
+    const internal::TimeChoice choice = internal::time_scale(header, options_, stamps, log_.source);
+    if (!choice.note.empty()) log_.damage.notes.push_back(choice.note);
+    for (double& stamp : stamps) stamp *= choice.scale;
+  }
+
+  /// The vector of stamps of a struct, or null.
+  const MatValue* stamps_of(const MatValue& value, const std::string& path) {
+    std::vector<const MatValue*> vectors;
+    std::vector<std::string> names;
+    for (const MatValue& item : value.items) {
+      if (!is_vector(item)) continue;
+      const std::string full = path.empty() ? item.name : fmt::format("{}.{}", path, item.name);
+      const bool asked = full == options_.time_column || item.name == options_.time_column;
+      time_found_ = time_found_ || asked;
+      if (asked) return &item;
+      vectors.push_back(&item);
+      names.push_back(item.name);
+    }
+    if (!options_.time_column.empty()) return nullptr;
+    const auto found = internal::find_time_column(names, {}, log_.source);
+    return found ? vectors[*found] : nullptr;
+  }
+
+  /// The most rows of an array, where the options give their rate.
+  [[nodiscard]] std::size_t rows_at_rate(const MatValue& value) const {
+    std::size_t rows = 0;
+    for (const MatValue& item : value.items) {
+      if (is_vector(item)) rows = std::max(rows, item.numbers.size());
+      if (!is_vector(item) && is_matrix(item)) rows = std::max(rows, item.extents[0]);
+    }
+    return rows;
+  }
+
   void take_labelled() {
     std::map<std::string, std::vector<std::string>> labels;
     for (const MatValue& value : file_.items) {
@@ -141,15 +271,9 @@ class Builder {
 
   // `name` is the path of the struct, empty for the file.
   void take_struct(MatValue& value, const std::string& name, int depth) {
-    const MatValue* time = nullptr;
-    double scale = 1.0;
-    for (const TimeName& known : kTimeNames) {
-      const MatValue* candidate = value.find(known.name);
-      if (time == nullptr && candidate != nullptr && is_vector(*candidate)) {
-        time = candidate;
-        scale = known.scale;
-      }
-    }
+    const bool made = options_.rate > 0.0;
+    const MatValue* time = made ? nullptr : stamps_of(value, name);
+    const std::size_t rows = made ? rows_at_rate(value) : time != nullptr ? time->numbers.size() : 0;
     LogTopic series;
     LogTopic table;
     series.name = table.name = name;
@@ -170,21 +294,24 @@ class Builder {
           log_.information[path] = item.text;
           break;
         case MatValue::Kind::kNumbers:
-          if (time != nullptr && fits(item, time->numbers.size())) {
-            add_series(item, label, time->numbers.size(), fields, columns);
+          if (rows > 1 && fits(item, rows)) {
+            add_series(item, label, rows, fields, columns);
           } else {
+            held_.push_back(in_words(path, item));
             LogField field{label, "1", 1.0, Column(std::move(item.numbers)), std::move(item.extents)};
             table.fields.push_back(std::move(field));
           }
           break;
-        case MatValue::Kind::kCell:
         case MatValue::Kind::kOther:
+          if (!item.class_name.empty()) log_.damage.notes.push_back(not_read(item));
+          break;
+        case MatValue::Kind::kCell:
           break;
       }
     }
-    if (time != nullptr && !fields.empty()) {
-      std::vector<double> stamps = time->numbers;
-      for (double& stamp : stamps) stamp *= scale;
+    if (!fields.empty()) {
+      std::vector<double> stamps = made ? made_stamps(rows) : time->numbers;
+      if (!made) to_seconds({time->name, ""}, stamps);
       set_series(series, std::move(stamps), std::move(fields), std::move(columns));
       log_.topics.push_back(std::move(series));
     }
@@ -211,10 +338,13 @@ class Builder {
   }
 
   Log& log_;
+  TableOptions options_;
   MatValue file_;
+  std::vector<std::string> held_;  ///< what is no series, with its extents
+  bool time_found_ = false;
 };
 
-Log read(std::string_view bytes, std::string source, const std::string* path) {
+Log read(std::string_view bytes, std::string source, const std::string* path, const TableOptions& options) {
   Log log;
   log.source = std::move(source);
   log.format = "MATLAB";
@@ -222,7 +352,7 @@ Log read(std::string_view bytes, std::string source, const std::string* path) {
   if (!is_mat(bytes)) {
     throw InputError(log.source, "not a MATLAB file of version 5 to 7.3 (save it with '-v7'; version 4 is not read)");
   }
-  Builder builder(log);
+  Builder builder(log, options);
   const auto take = [&](MatValue&& value) { builder.take(std::move(value)); };
   if (bytes.substr(0, kMatlab73.size()) == kMatlab73) {
     if (path == nullptr) throw InputError(log.source, "a MATLAB 7.3 file can only be read from disk");
@@ -244,12 +374,14 @@ bool is_mat(std::string_view bytes) {
   return mark == std::string_view("\x00\x01IM", 4) || mark == std::string_view("\x01\x00MI", 4);
 }
 
-Log read_mat(std::string_view bytes, std::string source) { return read(bytes, std::move(source), nullptr); }
+Log read_mat(std::string_view bytes, std::string source, const TableOptions& options) {
+  return read(bytes, std::move(source), nullptr, options);
+}
 
-Log read_mat_file(const std::filesystem::path& path) {
+Log read_mat_file(const std::filesystem::path& path, const TableOptions& options) {
   const MappedFile file(path);
   const std::string name = path.string();
-  return read(file.bytes(), name, &name);
+  return read(file.bytes(), name, &name, options);
 }
 
 }  // namespace veridyn::io

@@ -143,7 +143,7 @@ class CsvParser {
     const bool found = options_.decimal == '\0' && internal::has_decimal_comma(rest, style_.delimiter);
     style_.decimal_comma = found || options_.decimal == ',';
     if (found)
-      log_.damage.notes.emplace_back("numbers are read with a decimal comma; `decimal = \".\"` in [data] does not");
+      log_.damage.notes.emplace_back("numbers are read with a decimal comma; `decimal = \"point\"` in [data] does not");
   }
 
   [[nodiscard]] std::vector<std::string> first_row(CellReader& reader) const {

@@ -5,7 +5,6 @@
 #include <zip.h>
 
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <optional>
 
@@ -13,6 +12,7 @@
 #include "veridyn/io/log/time_stamps.hpp"
 #include "veridyn/io/packets/known_packets.hpp"
 #include "veridyn/io/packets/packet_log.hpp"
+#include "veridyn/io/tables/time_column.hpp"
 
 namespace veridyn::io {
 namespace {
@@ -68,9 +68,42 @@ std::string member_bytes(zip_t* archive, zip_uint64_t index, const zip_stat_t& s
   return content;
 }
 
-bool holds_stamps(const std::string& name, const NpyArray& array) {
-  constexpr std::array<std::string_view, 5> kNames = {"t", "time", "times", "timestamp", "timestamps"};
-  return array.columns.size() == 1 && std::find(kNames.begin(), kNames.end(), name) != kNames.end();
+/// Stamps [s], and the array that they are from, where they are from one.
+struct NpzStamps {
+  const NpyArray* array = nullptr;
+  std::vector<double> time;
+};
+
+NpzStamps stamps_of(const NpzArrays& read, const std::string& source, const TableOptions& options, LogDamage& damage) {
+  std::vector<std::string> names, candidates;
+  std::size_t rows = 0;
+  for (const auto& [name, array] : read.arrays) {
+    names.push_back(name);
+    if (array.columns.size() == 1) candidates.push_back(name);
+    rows = std::max(rows, array.rows());
+  }
+  NpzStamps stamps;
+  if (options.rate > 0.0) {
+    for (std::size_t i = 0; i < rows; ++i) stamps.time.push_back(static_cast<double>(i) / options.rate);
+    return stamps;
+  }
+  const auto found = internal::find_time_column(candidates, options, source);
+  if (!found) {
+    if (read.arrays.empty() && !read.left_out.empty())
+      throw InputError(source, "holds no array of numbers: " + read.left_out.front());
+    throw InputError(source,
+                     fmt::format("holds no array of stamps (t, time or timestamps); it has {}; say which: time = "
+                                 "{{ column = \"...\" }} or {{ rate = \"... Hz\" }} in [data]",
+                                 names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+  }
+  for (const auto& [name, array] : read.arrays) {
+    if (name == candidates[*found] && array.columns.size() == 1) stamps.array = &array;
+  }
+  stamps.time = stamps.array->columns.front().numbers();
+  const internal::TimeChoice choice = internal::time_scale({candidates[*found], ""}, options, stamps.time, source);
+  for (double& stamp : stamps.time) stamp *= choice.scale;
+  if (!choice.note.empty()) damage.notes.push_back(choice.note);
+  return stamps;
 }
 
 /// The columns of an array one after the other as floats, where each may be a packet of floats; empty where not.
@@ -120,29 +153,20 @@ NpzArrays read_npz_arrays(std::string_view bytes, const std::string& source) {
   return read;
 }
 
-Log read_npz(std::string_view bytes, const std::string& source) {
+Log read_npz(std::string_view bytes, const std::string& source, const TableOptions& options) {
   NpzArrays read = read_npz_arrays(bytes, source);
   auto& arrays = read.arrays;
   for (const auto& [name, array] : arrays) {
     const std::string packets = as_packets(array);
     if (const PacketLayout* layout = packets_in(packets)) return packet_log(*layout, packets, source);
   }
-  const auto stamps =
-      std::find_if(arrays.begin(), arrays.end(), [](const auto& a) { return holds_stamps(a.first, a.second); });
-  if (stamps == arrays.end()) {
-    if (arrays.empty() && !read.left_out.empty())
-      throw InputError(source, "holds no array of numbers: " + read.left_out.front());
-    std::vector<std::string> names;
-    for (const auto& [name, array] : arrays) names.push_back(name);
-    throw InputError(source, fmt::format("holds no array of stamps (t, time or timestamps); it has {}",
-                                         names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
-  }
   Log log;
   log.source = source;
   log.format = "NumPy arrays";
-  log.damage.notes = std::move(read.left_out);
-  const std::size_t rows = stamps->second.rows();
-  OrderedStamps ordered = order_stamps(stamps->second.columns.front().numbers());
+  NpzStamps stamps = stamps_of(read, source, options, log.damage);
+  log.damage.notes.insert(log.damage.notes.end(), read.left_out.begin(), read.left_out.end());
+  const std::size_t rows = stamps.time.size();
+  OrderedStamps ordered = order_stamps(std::move(stamps.time));
   LogTopic topic;
   topic.spikes = ordered.spikes;
   topic.reordered = ordered.reordered;
@@ -150,7 +174,7 @@ Log read_npz(std::string_view bytes, const std::string& source) {
   const bool all = ordered.row.empty() && !ordered.time.empty();
   std::vector<std::string> unused;
   for (auto& [name, array] : arrays) {
-    if (&array == &stamps->second) continue;
+    if (&array == stamps.array) continue;
     if (array.rows() != rows) {
       unused.push_back(name);
       continue;

@@ -7,6 +7,7 @@
 
 #include "veridyn/io/log/log.hpp"
 #include "veridyn/io/tables/npy.hpp"
+#include "veridyn/io/tables/table_options.hpp"
 
 namespace veridyn::io {
 
@@ -25,10 +26,11 @@ struct NpzArrays {
 /// (256 MiB each, 512 MiB together).
 [[nodiscard]] NpzArrays read_npz_arrays(std::string_view bytes, const std::string& source);
 
-/// A `.npz` as a log. An array of stamps named `t`, `time`, `times`, `timestamp` or `timestamps` [s] gives its time to
-/// every array with as many rows: `acc` with three columns makes `acc[0]`, `acc[1]`, `acc[2]`. An array
-/// whose columns are packets of a game's telemetry is read as such, see packets/packet_log.hpp.
+/// A `.npz` as a log. The array of stamps, which the options name or which has a name by which stamps are known (`t`,
+/// `Time`, `time_ms`, `timestamps`, ...), or else a rate, gives its time to every array with as many rows: `acc` with
+/// three columns makes `acc[0]`, `acc[1]`, `acc[2]`. An array whose columns are packets of a game's telemetry is read
+/// as such, see packets/packet_log.hpp.
 /// @throws InputError as `read_npz_arrays`, and where no array holds stamps.
-[[nodiscard]] Log read_npz(std::string_view bytes, const std::string& source);
+[[nodiscard]] Log read_npz(std::string_view bytes, const std::string& source, const TableOptions& options = {});
 
 }  // namespace veridyn::io

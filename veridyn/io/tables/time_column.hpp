@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "veridyn/io/tables/csv_cells.hpp"
 #include "veridyn/io/tables/csv_header.hpp"
 #include "veridyn/io/tables/table_options.hpp"
 

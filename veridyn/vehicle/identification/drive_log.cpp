@@ -32,6 +32,19 @@ Recording turned_to_flu(const Recording& recording) {
   return out;
 }
 
+/// Wheel speeds in km/h are speeds of the tread, not of rotation.
+Recording with_wheel_velocities(const Recording& recording) {
+  constexpr std::string_view kSpeed = "wheel_speed_";
+  Recording out = recording::without_channels(recording);
+  for (Channel channel : recording.channels()) {
+    const std::string velocity = "wheel_velocity_" + channel.name.substr(std::min(kSpeed.size(), channel.name.size()));
+    if (channel.name.starts_with(kSpeed) && channel.unit.same_dimension(parse_unit("m/s")) && !recording.has(velocity))
+      channel.name = velocity;
+    out.add(std::move(channel));
+  }
+  return out;
+}
+
 /// Several recordings as one, and where each is in it.
 struct JoinedRuns {
   Recording recording;
@@ -105,17 +118,24 @@ std::span<const recording::StandardChannel> standard_drive_channels() {
                                                                 {"wheel_speed_fr", "rad/s"},
                                                                 {"wheel_speed_rl", "rad/s"},
                                                                 {"wheel_speed_rr", "rad/s"},
+                                                                {"wheel_velocity_fl", "m/s"},
+                                                                {"wheel_velocity_fr", "m/s"},
+                                                                {"wheel_velocity_rl", "m/s"},
+                                                                {"wheel_velocity_rr", "m/s"},
                                                                 {"pos_x", "m"},
                                                                 {"pos_y", "m"}};
   return channels;
 }
 
-recording::MappedRecording map_drive_channels(const Recording& log, const StudyTable& map, std::string_view frame,
+recording::MappedRecording map_drive_channels(const Recording& recorded, const StudyTable& map, std::string_view frame,
                                               std::string_view frame_place) {
+  const Recording log = with_wheel_velocities(recorded);
   recording::MappedRecording mapped;
   mapped.recording = recording::without_channels(log);
   mapped.log_kind = "study";
   mapped = recording::with_standard_channels(std::move(mapped), log, standard_drive_channels(), map);
+  mapped = recording::with_recognised_channels(std::move(mapped), log, standard_drive_channels(),
+                                               drive_channel_aliases(), map);
   mapped = recording::with_channel_map(std::move(mapped), log, standard_drive_channels(), map);
   bool turn = log.frame == Frame::kFrd;
   if (frame == "flu") {

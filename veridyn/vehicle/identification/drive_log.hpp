@@ -9,14 +9,19 @@
 #include "veridyn/core/recording.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/recording/channel_map.hpp"
+#include "veridyn/recording/channel_recognition.hpp"
 
 namespace veridyn::vehicle {
 
 /// All standard names of vehicle recordings with their SI units: `steer` (road wheels), `steering_wheel` (hand wheel),
 /// `speed` (forward, of the centre of gravity), `yaw_rate` (or `gyro_z`), `accel_x|y|z` (specific force),
 /// `lateral_velocity` (of the centre of gravity), `sideslip`, `roll`, `pitch`, `yaw`, `course`, `roll_rate`,
-/// `wheel_speed_fl|fr|rl|rr`, `pos_x`, `pos_y`.
+/// `wheel_speed_fl|fr|rl|rr` (of rotation), `wheel_velocity_fl|fr|rl|rr` (of the tread, as CAN has it; wheel speeds
+/// that are recorded in km/h are these), `pos_x`, `pos_y`.
 [[nodiscard]] std::span<const recording::StandardChannel> standard_drive_channels();
+
+/// Other names under which these are recorded: "YawRate", "vx", "delta".
+[[nodiscard]] std::span<const recording::ChannelAlias> drive_channel_aliases();
 
 /// A drive as the study's `[data]` names it: channels with standard names, in frame flu.
 struct DriveLog {
@@ -31,7 +36,7 @@ struct DriveLog {
 /// `frame` is that of the log, "flu" or "frd" (then y, z, yaw, steering and course change their sign);
 /// empty: the frame of the log itself, flu with a note where it has none.
 /// @throws InputError for unknown names, sources that the log lacks, units of another kind, an unknown frame.
-[[nodiscard]] recording::MappedRecording map_drive_channels(const Recording& log, const StudyTable& map,
+[[nodiscard]] recording::MappedRecording map_drive_channels(const Recording& recorded, const StudyTable& map,
                                                             std::string_view frame = {},
                                                             std::string_view frame_place = {});
 

@@ -97,6 +97,17 @@ GridSignal forward_speed(const recording::MappedRecording& mapped, const numeric
   if (const Channel* speed = find_channel(mapped, "speed"))
     return signal_of(DriveSignal::kSpeed, *speed, grid, options, "speed");
   for (const bool rear : {true, false}) {
+    const Channel* left = find_channel(mapped, rear ? "wheel_velocity_rl" : "wheel_velocity_fl");
+    const Channel* right = find_channel(mapped, rear ? "wheel_velocity_rr" : "wheel_velocity_fr");
+    if (left == nullptr || right == nullptr) continue;
+    GridSignal signal = signal_of(DriveSignal::kSpeed, *left, grid, options,
+                                  rear ? "mean of the rear wheels" : "mean of the front wheels");
+    const std::vector<double> other = on_grid(*right, grid);
+    for (std::size_t k = 0; k < other.size(); ++k) signal.value[k] = 0.5 * (signal.value[k] + other[k]);
+    signal.sigma /= std::sqrt(2.0);
+    return signal;
+  }
+  for (const bool rear : {true, false}) {
     const Channel* left = find_channel(mapped, rear ? "wheel_speed_rl" : "wheel_speed_fl");
     const Channel* right = find_channel(mapped, rear ? "wheel_speed_rr" : "wheel_speed_fr");
     if (left == nullptr || right == nullptr) continue;

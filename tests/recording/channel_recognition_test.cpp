@@ -1,0 +1,89 @@
+#include "veridyn/recording/channel_recognition.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace veridyn::recording {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const std::array<StandardChannel, 6> kRecognisable{{{"accel_x", "m/s^2"},
+                                                    {"accel_z", "m/s^2"},
+                                                    {"gyro_x", "rad/s"},
+                                                    {"yaw", "rad"},
+                                                    {"airspeed", "m/s"},
+                                                    {"roll", "rad"}}};
+constexpr std::array<ChannelAlias, 6> kOtherNames{{{"ax", "accel_x"},
+                                                   {"az", "accel_z"},
+                                                   {"p", "gyro_x"},
+                                                   {"psi", "yaw"},
+                                                   {"V", "airspeed", "taken as true airspeed"},
+                                                   {"phi", "roll"}}};
+
+Recording log_of(const std::vector<std::pair<std::string, std::vector<double>>>& channels) {
+  Recording log;
+  const TimeBase time = make_time_base({0.0, 1.0, 2.0});
+  for (const auto& [name, value] : channels) log.add(make_channel(name, "1", time, value));
+  return log;
+}
+
+Recognition recognised(const Recording& log) { return recognise_channels(log, {}, kRecognisable, kOtherNames); }
+
+std::string unit_of(const Recognition& recognition, std::string_view channel) {
+  for (const RecognisedChannel& one : recognition.found)
+    if (one.channel == channel) return one.unit;
+  return "not found";
+}
+
+TEST(ChannelRecognition, LeavesAUnitOpenThatNothingTells) {
+  const Recognition r = recognised(log_of({{"p", {-0.2, 0.0, 0.3}}, {"phi", {0.1, 0.2, 0.3}}, {"V", {20, 21, 22}}}));
+  for (const char* channel : {"gyro_x", "roll", "airspeed"}) EXPECT_EQ(unit_of(r, channel), "?") << channel;
+  EXPECT_EQ(r.found[0].why, "-0.2 to 0.3: rad/s or deg/s?");
+}
+
+TEST(ChannelRecognition, TakesAUnitThatTheNumbersProve) {
+  const Recognition r =
+      recognised(log_of({{"ax", {0.1, 0.2, 0.1}}, {"az", {-1.0, -1.02, -0.9}}, {"psi", {0, 180, 359}}}));
+  EXPECT_EQ(unit_of(r, "yaw"), "deg");
+  EXPECT_EQ(unit_of(r, "accel_z"), "g");
+  EXPECT_EQ(unit_of(r, "accel_x"), "g");
+  EXPECT_EQ(unit_of(recognised(log_of({{"az", {-9.8, -9.7, -9.9}}})), "accel_z"), "m/s^2");
+  // 5 is neither.
+  EXPECT_EQ(unit_of(recognised(log_of({{"az", {-5, -5, -5}}})), "accel_z"), "?");
+}
+
+TEST(ChannelRecognition, ReadsTheUnitAtTheEndOfAName) {
+  const Recognition r = recognised(log_of({{"p_deg_s", {1, 2, 3}}, {"V_mps", {1, 2, 3}}, {"phi_m", {1, 2, 3}}}));
+  EXPECT_EQ(unit_of(r, "gyro_x"), "deg/s");
+  EXPECT_EQ(unit_of(r, "airspeed"), "m/s");
+  // Metres are no angle.
+  EXPECT_EQ(unit_of(r, "roll"), "not found");
+  EXPECT_THAT(r.others, ElementsAre("phi_m"));
+}
+
+TEST(ChannelRecognition, TellsOneLetterFromItsCapital) {
+  EXPECT_EQ(unit_of(recognised(log_of({{"v", {1, 2, 3}}, {"P", {1, 2, 3}}})), "airspeed"), "not found");
+}
+
+TEST(ChannelRecognition, WritesTheMapOfAStudy) {
+  Recording log = log_of({{"psi", {0, 180, 359}}, {"odd\nname", {1, 2, 3}}});
+  log.add(make_channel("p", "rad/s", make_time_base({0.0, 1.0}), {0.0, 1.0}));
+  const std::string text = map_section(log, {}, kRecognisable, kOtherNames);
+  EXPECT_THAT(text, HasSubstr("yaw = { channel = \"psi\", unit = \"deg\" }"));
+  EXPECT_THAT(text, HasSubstr("# 0 to 359: beyond a turn in radians\n"));
+  EXPECT_THAT(text, HasSubstr("gyro_x = \"p\" "));
+  EXPECT_THAT(text, HasSubstr("# not found: accel_x, accel_z, airspeed, roll\n"));
+  EXPECT_THAT(text, HasSubstr("# channels of the log that were not recognised: odd name\n"));
+  // What it writes is TOML, and maps.
+  const Study study = Study::parse("[map]\n" + text, "s.toml");
+  const MappedRecording mapped = with_channel_map({}, log, kRecognisable, study.root().table("map"));
+  EXPECT_THAT(mapped.recording.names(), ElementsAre("gyro_x", "yaw"));
+}
+
+}  // namespace
+}  // namespace veridyn::recording

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "veridyn/recording/channel_map.hpp"
+
+namespace veridyn::recording {
+
+/// Another name under which people record a standard channel: "p" for gyro_x.
+struct ChannelAlias {
+  std::string_view name;     ///< small letters and digits only: "Yaw Rate" is "yawrate"; one letter: as it is
+  std::string_view channel;  ///< standard name
+  std::string_view note{};   ///< what the name leaves open: "indicated", "road wheels or hand wheel?"
+};
+
+/// A channel of a log that is a standard channel by its name.
+struct RecognisedChannel {
+  std::string channel;  ///< standard name
+  std::string source;   ///< name in the log
+  std::string unit;     ///< of the numbers, where the log does not say it; "?" where nothing tells
+  std::string why;      ///< how the unit is known, or what it may be; empty where the log says it
+  std::string note;     ///< of the name
+};
+
+/// What a log holds, by names.
+struct Recognition {
+  std::vector<RecognisedChannel> found;  ///< in the order of the standard channels, one for each
+  std::vector<std::string> others;       ///< channels of the log that are none of these, nor mapped already
+};
+
+/// Finds the standard channels that `mapped` lacks among the channels of the log, by standard names without their unit
+/// and by `aliases`, the first that fits. A channel whose unit is of another kind is passed over.
+///
+/// Where the log gives no unit, one at the end of the name ("V_mps") or the numbers may say it: angles beyond a turn
+/// are no radians, the median of a vertical acceleration is gravity. Else it is "?": nothing is guessed.
+[[nodiscard]] Recognition recognise_channels(const Recording& log, const MappedRecording& mapped,
+                                             std::span<const StandardChannel> standard,
+                                             std::span<const ChannelAlias> aliases);
+
+/// Adds the recognised channels whose unit the log says or the study declares (`units` in `[data.map]`), each with a
+/// note that it was taken by its name; of those whose unit nothing says there is one note for all. Keys of `map` are
+/// left to `with_channel_map`.
+[[nodiscard]] MappedRecording with_recognised_channels(MappedRecording mapped, const Recording& log,
+                                                       std::span<const StandardChannel> standard,
+                                                       std::span<const ChannelAlias> aliases, const StudyTable& map);
+
+/// `[data.map]` of a study about this log: a line for each recognised channel, with its unit to be confirmed, and
+/// comments: what is mapped by itself, what was not found, which channels were not recognised.
+[[nodiscard]] std::string map_section(const Recording& log, const MappedRecording& mapped,
+                                      std::span<const StandardChannel> standard, std::span<const ChannelAlias> aliases);
+
+}  // namespace veridyn::recording
