@@ -17,14 +17,22 @@ int main(int count, char** arguments) {
   }
   try {
     const std::filesystem::path folder = arguments[1];
-    const auto write = [&](const char* format, const std::string& bytes) {
+    const auto write = [&](const char* format, const std::string& bytes, const char* name = "small") {
       veridyn::make_folder(folder / format);
-      veridyn::write_file(folder / format / "small", bytes);
+      veridyn::write_file(folder / format / name, bytes);
     };
     write("dataflash", veridyn::testing::small_dataflash());
     write("dataflash_text", veridyn::testing::small_dataflash_text());
     write("ulog", veridyn::testing::small_ulog());
     write("csv", veridyn::testing::small_csv());
+    write("csv", "# t p (deg/s) V\n0 1 20\n20\t2 21\n40 3 22\n", "blanks");
+    write("csv", "Zeit;V;V\ns;km/h;\n0,0;1,5;2\n0,1;2,5;3\n", "decimal_comma");
+    write("csv", "time,x\n2024-05-03T23:59:59.5+02:00,1\n2024-05-03T22:00:00Z,2\n", "zones");
+    write("csv", "time,x\n23:59:59.5,1\n00:00:00.5,2\n", "midnight");
+    write("csv", "time,x\n0.0 sec,1\n0.1 sec,2\n", "durations");
+    std::string twice = "\x07time,x\n";
+    for (int i = 0; i < 24; ++i) twice += std::to_string(i % 12) + ",1\n";
+    write("csv", twice, "restart");
     write("number_table", "# of three runs\nrun,alpha[rad],CL,day\n1,0.1,0.4,Mon\n1,0.2,NaN,Mon\n2,-1e-1,,Tue\n");
     write("mat", veridyn::testing::small_mat());
     write("storage",

@@ -10,7 +10,6 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 const std::array<StandardChannel, 6> kRecognisable{{{"accel_x", "m/s^2"},
                                                     {"accel_z", "m/s^2"},
@@ -68,6 +67,17 @@ TEST(ChannelRecognition, ReadsTheUnitAtTheEndOfAName) {
 
 TEST(ChannelRecognition, TellsOneLetterFromItsCapital) {
   EXPECT_EQ(unit_of(recognised(log_of({{"v", {1, 2, 3}}, {"P", {1, 2, 3}}})), "airspeed"), "not found");
+}
+
+TEST(ChannelRecognition, LeavesANameThatMayMeanTwoThingsToTheStudy) {
+  constexpr std::array<ChannelAlias, 1> kOpen{{{"heading", "yaw", "true or magnetic?", true}}};
+  Recording log;
+  log.add(make_channel("heading", "rad", make_time_base({0.0, 1.0}), {0.0, 1.0}));
+  EXPECT_THAT(map_section(log, {}, kRecognisable, kOpen), HasSubstr("\n# yaw = \"heading\" "));
+  const MappedRecording mapped = with_recognised_channels({}, log, kRecognisable, kOpen, StudyTable("data.map"));
+  EXPECT_TRUE(mapped.recording.channels().empty());
+  EXPECT_THAT(mapped.notes, ElementsAre("heading may be yaw (true or magnetic?): not taken; yaw = \"heading\" in "
+                                        "[data.map] takes it"));
 }
 
 TEST(ChannelRecognition, WritesTheMapOfAStudy) {

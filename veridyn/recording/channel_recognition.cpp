@@ -116,9 +116,9 @@ bool is_bare(const Channel& channel) {
 
 /// The recognised channel, where its unit is of the right kind.
 std::optional<RecognisedChannel> recognised(const Channel& channel, const StandardChannel& target,
-                                            std::string_view suffix, std::string_view note) {
+                                            std::string_view suffix, const ChannelAlias& alias) {
   const Unit expected = parse_unit(target.unit);
-  RecognisedChannel found{target.name, channel.name, "", "", std::string(note)};
+  RecognisedChannel found{target.name, channel.name, "", "", std::string(alias.note), alias.open};
   if (!is_bare(channel)) {
     if (!channel.unit.same_dimension(expected)) return std::nullopt;
     return found;
@@ -203,7 +203,7 @@ Recognition recognise_channels(const Recording& log, const MappedRecording& mapp
       for (const auto& [name, channel] : channels) {
         if (found || taken.contains(channel->name) || (name.name != alias.name && channel->name != alias.name))
           continue;
-        found = recognised(*channel, target, name.unit, alias.note);
+        found = recognised(*channel, target, name.unit, alias);
       }
     }
     if (!found) continue;
@@ -222,6 +222,11 @@ MappedRecording with_recognised_channels(MappedRecording mapped, const Recording
   std::vector<std::string> without_unit;
   for (const RecognisedChannel& one : recognise_channels(log, mapped, standard, aliases).found) {
     if (map.has(one.channel)) continue;
+    if (one.open) {
+      mapped.notes.push_back(fmt::format("{} may be {} ({}): not taken; {} = \"{}\" in [data.map] takes it", one.source,
+                                         one.channel, one.note, one.channel, one.source));
+      continue;
+    }
     const auto target = std::ranges::find(standard, one.channel, &StandardChannel::name);
     const Channel& raw = log.at(one.source);
     const std::string unit = one.unit.empty() ? std::string() : declared_unit(map, *target);
@@ -258,6 +263,7 @@ std::string map_section(const Recording& log, const MappedRecording& mapped, std
     std::string line = one.unit.empty() ? fmt::format("{} = {}", one.channel, toml_text(one.source))
                                         : fmt::format("{} = {{ channel = {}, unit = {} }}", one.channel,
                                                       toml_text(one.source), toml_text(one.unit));
+    if (one.open) line = "# " + line;  // to be decided by its user
     std::string comment = one.why;
     if (one.unit.empty()) comment = fmt::format("in {}", log.at(one.source).recorded_unit);
     if (!one.note.empty()) comment += (comment.empty() ? "" : "; ") + one.note;

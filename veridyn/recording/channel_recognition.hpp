@@ -13,7 +13,8 @@ namespace veridyn::recording {
 struct ChannelAlias {
   std::string_view name;     ///< small letters and digits only: "Yaw Rate" is "yawrate"; one letter: as it is
   std::string_view channel;  ///< standard name
-  std::string_view note{};   ///< what the name leaves open: "indicated", "road wheels or hand wheel?"
+  std::string_view note{};   ///< what the name says besides: "true airspeed"
+  bool open = false;         ///< it may be something else, as the note asks: not taken but by the study
 };
 
 /// A channel of a log that is a standard channel by its name.
@@ -23,6 +24,7 @@ struct RecognisedChannel {
   std::string unit;     ///< of the numbers, where the log does not say it; "?" where nothing tells
   std::string why;      ///< how the unit is known, or what it may be; empty where the log says it
   std::string note;     ///< of the name
+  bool open = false;    ///< the name alone does not decide
 };
 
 /// What a log holds, by names.
@@ -40,9 +42,9 @@ struct Recognition {
                                              std::span<const StandardChannel> standard,
                                              std::span<const ChannelAlias> aliases);
 
-/// Adds the recognised channels whose unit the log says or the study declares (`units` in `[data.map]`), each with a
-/// note that it was taken by its name; of those whose unit nothing says there is one note for all. Keys of `map` are
-/// left to `with_channel_map`.
+/// Adds the recognised channels, but those whose name leaves it open, whose unit the log says or the study declares
+/// (`units` in `[data.map]`), each with a note that it was taken by its name; of those whose unit nothing says there is
+/// one note for all. Keys of `map` are left to `with_channel_map`.
 [[nodiscard]] MappedRecording with_recognised_channels(MappedRecording mapped, const Recording& log,
                                                        std::span<const StandardChannel> standard,
                                                        std::span<const ChannelAlias> aliases, const StudyTable& map);

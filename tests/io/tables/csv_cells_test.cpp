@@ -45,6 +45,12 @@ TEST(CsvCells, BlanksSeparateWhereNothingElseDoes) {
   ASSERT_TRUE(reader.number(value));
   EXPECT_TRUE(reader.at_end());
   EXPECT_EQ(reader.lines(), 3U);
+  // A carriage return within a line is a blank: every cell that is taken leads on.
+  CellReader returns("a \r\xc7 b", ' ');
+  EXPECT_EQ(returns.text(), "a");
+  EXPECT_EQ(returns.text(), "\xc7");
+  EXPECT_EQ(returns.text(), "b");
+  EXPECT_TRUE(returns.at_end());
   // A number that goes on as a word is a word.
   CellReader glued("12ab 3", ' ');
   EXPECT_FALSE(glued.number(value));

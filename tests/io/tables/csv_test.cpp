@@ -75,6 +75,7 @@ TEST(Csv, TakesAHeaderFromTheLastCommentThatFits) {
   EXPECT_EQ(numpy.information.at("flight"), "12");
   const Recording matlab = read("% time (s), Pitch (deg), V (kt)\n0,180,1\n% a remark\n1,90,1\n");
   EXPECT_NEAR(matlab.at("Pitch").value[1], std::numbers::pi / 2.0, 1e-15);
+  EXPECT_EQ(refusal("\"\n0 1\n", {.delimiter = ' '}), "a.csv:1: column 1: has no name");
   // A comment of another length is no header.
   EXPECT_EQ(refusal("# t p\n0,1,2\n").substr(0, 29), "a.csv:2: no time column found");
 }

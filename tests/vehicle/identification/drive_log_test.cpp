@@ -16,9 +16,11 @@ TEST(DriveLog, TakesWheelSpeedsInKilometresPerHourForThoseOfTheTread) {
   const TimeBase time = make_time_base({0.0, 0.1});
   log.add(make_channel("wheel_speed_rl", "m/s", time, {10.0, 11.0}));
   log.add(make_channel("wheel_speed_rr", "rad/s", time, {30.0, 31.0}));
+  log.add(make_channel("SteeringAngle", "rad", time, {0.1, 0.2}));  // of the hand wheel or the road wheels: left open
   log.add(make_channel("YawRate", "rad/s", time, {0.1, 0.2}));
   const recording::MappedRecording mapped = map_drive_channels(log, StudyTable("data.map"));
   EXPECT_EQ(mapped.recording.names(), (std::vector<std::string>{"wheel_speed_rr", "wheel_velocity_rl", "yaw_rate"}));
+  EXPECT_EQ(mapped.origins[1].source, "wheel_speed_rl");
 }
 
 TEST(DriveLog, TurnsAFrdRecordingIntoFlu) {

@@ -35,7 +35,7 @@ std::span<const recording::ChannelAlias> channel_aliases() {
       {"the", "pitch"},
       {"pitchangle", "pitch"},
       {"psi", "yaw"},
-      {"heading", "yaw", "true or magnetic?"},
+      {"heading", "yaw", "true or magnetic?", true},
       {"yawangle", "yaw"},
       {"vn", "vel_north"},
       {"vnorth", "vel_north"},

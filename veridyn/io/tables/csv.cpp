@@ -147,7 +147,11 @@ class CsvParser {
   }
 
   [[nodiscard]] std::vector<std::string> first_row(CellReader& reader) const {
-    if (style_.delimiter == ' ') return internal::blank_separated(reader.line());
+    if (style_.delimiter == ' ') {
+      std::vector<std::string> names = internal::blank_separated(reader.line());
+      if (names.empty()) names.emplace_back();  // a row of quotes
+      return names;
+    }
     std::vector<std::string> cells;
     do {
       cells.push_back(reader.text());

@@ -85,7 +85,7 @@ bool CellReader::close_at_blank(const char* from) {
   while (from != end_ && (*from == ' ' || *from == '\t' || *from == '\r')) ++from;
   if (from != end_ && *from != '\n') {
     const char before = from == at_ ? '\0' : from[-1];
-    if (before != ' ' && before != '\t') return false;
+    if (before != ' ' && before != '\t' && before != '\r') return false;
     at_ = from;
     row_ended_ = false;
     newline_ = false;

@@ -134,6 +134,9 @@ recording::MappedRecording map_drive_channels(const Recording& recorded, const S
   mapped.recording = recording::without_channels(log);
   mapped.log_kind = "study";
   mapped = recording::with_standard_channels(std::move(mapped), log, standard_drive_channels(), map);
+  for (recording::ChannelOrigin& origin : mapped.origins)
+    if (!recorded.has(origin.source))
+      origin.source = "wheel_speed_" + origin.source.substr(origin.source.rfind('_') + 1);
   mapped = recording::with_recognised_channels(std::move(mapped), log, standard_drive_channels(),
                                                drive_channel_aliases(), map);
   mapped = recording::with_channel_map(std::move(mapped), log, standard_drive_channels(), map);
