@@ -182,7 +182,7 @@ std::string reading_keys(const Arguments& arguments) {
     try {
       static_cast<void>(Study::parse("value = " + value, "--set"));
     } catch (const InputError&) {
-      value = '"' + value + '"';
+      value = fmt::format("\"{}\"", value);
     }
     lines += fmt::format("{} = {}\n", text.substr(kTable.size(), equals - kTable.size()), value);
   }

@@ -169,7 +169,7 @@ std::string listed(std::string_view words, const std::vector<std::string>& names
   constexpr std::size_t kMost = 120, kWidth = 110;
   std::string text, line = fmt::format("# {}:", words);
   for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) {
-    const std::string word = " " + on_one_line(names[i]) + (i + 1 < names.size() ? "," : "");
+    const std::string word = fmt::format(" {}{}", on_one_line(names[i]), i + 1 < names.size() ? "," : "");
     if (line.size() + word.size() > kWidth) {
       text += line + '\n';
       line = "#  ";
@@ -263,7 +263,7 @@ std::string map_section(const Recording& log, const MappedRecording& mapped, std
     std::string line = one.unit.empty() ? fmt::format("{} = {}", one.channel, toml_text(one.source))
                                         : fmt::format("{} = {{ channel = {}, unit = {} }}", one.channel,
                                                       toml_text(one.source), toml_text(one.unit));
-    if (one.open) line = "# " + line;  // to be decided by its user
+    if (one.open) line.insert(0, "# ");  // to be decided by its user
     std::string comment = one.why;
     if (one.unit.empty()) comment = fmt::format("in {}", log.at(one.source).recorded_unit);
     if (!one.note.empty()) comment += (comment.empty() ? "" : "; ") + one.note;
