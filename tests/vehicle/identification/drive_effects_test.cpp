@@ -25,7 +25,7 @@ constexpr DriveEffects kOnlyBank{true, false, false};
 /// What is identified of a drive, begun from stiffnesses and an inertia that are wrong.
 VehicleIdentification identified(const VehicleTrajectory& drive, const DriveSensorSet& sensors,
                                  VehicleParameters<double> start, std::optional<DriveEffects> effects,
-                                 const DriveSegmentOptions& spans = {}) {
+                                 const DriveSegmentOptions& spans = {}, Progress&& progress = {}) {
   start.C_f = start.C_r = 80000.0;
   start.I_z = 2000.0;
   VehicleIdentifyOptions options;
@@ -34,8 +34,7 @@ VehicleIdentification identified(const VehicleTrajectory& drive, const DriveSens
   const DriveSignalOptions signal_options;
   const DriveSignals signals = prepare_drive_signals(testing::mapped(record_drive(drive, sensors, 1)), signal_options);
   const DriveSegments segments = find_drive_segments(signals, spans);
-  Progress silent;
-  return identify_parameters({signals, segments, start, signal_options, options}, silent);
+  return identify_parameters({signals, segments, start, signal_options, options}, progress);
 }
 
 double value_of(const VehicleIdentification& id, const char* name) {
@@ -115,6 +114,32 @@ TEST(DriveEffects, AVaryingBankIsFoundAndTheCarWithIt) {
   const VehicleIdentification without =
       identified(drive, reference_drive_sensors(), family_car(), kNone, banked_stretches());
   EXPECT_EQ(without.judgement.parameters.grade, estimation::Grade::kNo) << without.reason;
+}
+
+/// Ctrl-C at the second stage of a name.
+class InterruptedAtTheSecond : public Progress {
+ public:
+  explicit InterruptedAtTheSecond(std::string name) : name_(std::move(name)) {}
+  void stage(std::string_view name) override { times_ += name == name_ ? 1 : 0; }
+  bool update(double) override { return !interrupted(); }
+  [[nodiscard]] bool interrupted() const override { return times_ >= 2; }
+
+ private:
+  std::string name_;
+  int times_ = 0;
+};
+
+// Interrupted while the structures are tried once more with the bank, the estimate is that with the bank.
+TEST(DriveEffects, AnInterruptionLeavesWhatWasFoundOfThem) {
+  const VehicleIdentification id =
+      identified(banked_drive(1), reference_drive_sensors(), family_car(), {}, banked_stretches(),
+                 InterruptedAtTheSecond("output error, structure: bicycle, banked road"));
+  EXPECT_TRUE(id.effects == kOnlyBank) << id.structure_reason;
+  ASSERT_NE(id.best(), nullptr);
+  EXPECT_LT(largest_error(id, family_car()), 0.05);
+  EXPECT_EQ(std::ranges::count_if(id.tried_structures,
+                                  [](const TriedStructure& t) { return t.usable && t.effects == kOnlyBank; }),
+            1);
 }
 
 TEST(DriveEffects, AreNotLookedForWhereTheDriveDoesNotTell) {

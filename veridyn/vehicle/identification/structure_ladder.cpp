@@ -240,14 +240,26 @@ class Climb {
     if (chosen != without && !progress_.interrupted()) climb_with_effects(chosen);
   }
 
-  /// From the simplest upward, which is the order of the choice; the rung taken so far is one of them.
+  /// The rung taken so far gives way to all structures with its effects, one of which it is. Interrupted, it stays.
   void climb_with_effects(std::size_t chosen) {
-    const DriveEffects effects = ladder_.tried[chosen].effects;
-    search_start_ = fits_[chosen].raw.theta;
-    const auto drop = [&](auto& rungs) { rungs.erase(rungs.begin() + signed_index(chosen)); };
-    drop(ladder_.tried);
-    drop(fits_);
-    drop(options_);
+    const auto taken_off = [&](auto& rungs) {
+      auto rung = std::move(rungs[chosen]);
+      rungs.erase(rungs.begin() + signed_index(chosen));
+      return rung;
+    };
+    TriedStructure tried_before = taken_off(ladder_.tried);
+    OutputErrorResult fit_before = taken_off(fits_);
+    VehicleIdentifyOptions options_before = taken_off(options_);
+    search_start_ = fit_before.raw.theta;
+    climb_again(tried_before.effects);
+    if (!progress_.interrupted()) return;
+    ladder_.tried.push_back(std::move(tried_before));
+    fits_.push_back(std::move(fit_before));
+    options_.push_back(std::move(options_before));
+  }
+
+  /// From the simplest upward, which is the order of the choice.
+  void climb_again(const DriveEffects& effects) {
     for (const DriveStructure structure : {DriveStructure::kBicycle, DriveStructure::kRoll}) {
       if (progress_.interrupted()) return;
       fit(structure, false, effects);
