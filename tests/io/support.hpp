@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "tests/support/folders.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/io/log/log.hpp"
@@ -38,26 +39,13 @@ std::string message_of(Call&& call) {
   return "";
 }
 
-/// A folder that goes when the test ends.
-class TemporaryFolder {
+/// A folder of the test's own, with files.
+class TemporaryFolder : public test::TemporaryFolder {
  public:
-  TemporaryFolder()
-      : path_(std::filesystem::temp_directory_path() /
-              ("veridyn_io_" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()) + "_" +
-               ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
-    std::filesystem::create_directories(path_);
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
   [[nodiscard]] std::filesystem::path write(const char* name, std::string_view content) const {
-    write_file(path_ / name, content);
-    return path_ / name;
+    write_file(path() / name, content);
+    return path() / name;
   }
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
 };
 
 /// What must hold of whatever a reader makes of damaged bytes: columns as long as their time base, time that does not
