@@ -14,8 +14,8 @@
 
 namespace veridyn::io::internal {
 
-/// Seconds that a stamp says which is no number: a date with its time, a time of day ("11:12:06.642"), or a duration
-/// with its unit, as MATLAB writes them ("0.02 sec").
+/// A stamp written as text, in seconds: a date with its time, a time of day ("11:12:06.642"), or a duration with its
+/// unit, as MATLAB writes them ("0.02 sec").
 struct TextStamp {
   enum class Kind { kDate, kTimeOfDay, kDuration };
   Kind kind = Kind::kDate;
