@@ -119,7 +119,7 @@ Autocorrelation autocorrelation(std::span<const double> x, std::size_t max_lag, 
   Autocorrelation result;
   result.count = x.size();
   if (x.empty()) return result;
-  result.white_bound95 = 1.959963984540054 / std::sqrt(static_cast<double>(x.size()));
+  result.white_bound95 = kNormal95 / std::sqrt(static_cast<double>(x.size()));
   const std::vector<double> c = centred(x);
   const auto bounds = segment_bounds(c.size(), segment);
   const double power = lagged_product(c, bounds, 0);
@@ -177,7 +177,7 @@ double effective_sample_size_variance(std::span<const double> x, std::span<const
   const double power = lagged_product(c, bounds, 0);
   const auto count = static_cast<double>(n);
   if (!(power > 0.0)) return count;
-  const double bound = 1.959963984540054 / std::sqrt(count);
+  const double bound = kNormal95 / std::sqrt(count);
   double sum = 0.0;
   std::size_t quiet = 0;
   for (std::size_t lag = 1; lag < std::min<std::size_t>(n / 2, 2000) && quiet < 10; ++lag) {
@@ -232,6 +232,16 @@ double quantile_of_sorted(std::span<const double> sorted, double share) {
   const auto below = static_cast<std::size_t>(place);
   const std::size_t above = std::min(below + 1, sorted.size() - 1);
   return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+}
+
+double rms(std::span<const double> x) {
+  double squares = 0.0, count = 0.0;
+  for (const double v : x) {
+    if (!std::isfinite(v)) continue;
+    squares += v * v;
+    count += 1.0;
+  }
+  return std::sqrt(squares / std::max(1.0, count));
 }
 
 double median(std::span<const double> x) {

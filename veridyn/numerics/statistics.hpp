@@ -9,6 +9,9 @@ namespace veridyn::numerics {
 /// x with P(X <= x) = p for a standard normal X; 0 < p < 1. Check: normal_quantile(0.975) = 1.959963984540054.
 [[nodiscard]] double normal_quantile(double p);
 
+/// normal_quantile(0.975): half of a 95 % interval [standard deviations].
+inline constexpr double kNormal95 = 1.959963984540054;
+
 /// P(X <= x) for a standard normal X.
 [[nodiscard]] double normal_cdf(double x);
 
@@ -96,6 +99,8 @@ struct FitMeasures {
 /// The value below which `share` (0 to 1) of values lie that are sorted and not empty; on a line between neighbours
 /// (Hyndman & Fan 1996, Am Stat 50:361, definition 7).
 [[nodiscard]] double quantile_of_sorted(std::span<const double> sorted, double share);
+/// Root of the mean square of the finite values (0 when there are none).
+[[nodiscard]] double rms(std::span<const double> x);
 /// Median of the finite values (NaN when there are none).
 [[nodiscard]] double median(std::span<const double> x);
 /// 1.4826 median |x - median|: the standard deviation of normal data, whatever a minority of outliers does.

@@ -10,6 +10,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::recording {
 namespace {
@@ -143,7 +144,7 @@ AxisRelation related(std::string text, const Values& y_raw, const Values& x_raw,
     squares += (rest.slope() - r.slope) * (rest.slope() - r.slope);
     used += 1.0;
   }
-  const double half = used > 1.0 ? 1.96 * std::sqrt(squares * (used - 1.0) / used) : kNaN;
+  const double half = used > 1.0 ? numerics::kNormal95 * std::sqrt(squares * (used - 1.0) / used) : kNaN;
   r.low = r.slope - half;
   r.high = r.slope + half;
   const bool enough = r.seconds >= kShortest && std::sqrt(all.variance_x()) > least;

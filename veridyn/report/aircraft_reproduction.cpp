@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/numerics/statistics.hpp"
 #include "veridyn/report/figures/curves.hpp"
 #include "veridyn/report/figures/track_panels.hpp"
 
@@ -172,8 +173,8 @@ TimeSeries tracking_figure(const Reproduction& r) {
         const double sigma = h.sigma[i][t];
         if (std::abs(line.y[t]) > bound) line.y[t] = kNaN;
         const bool shown = std::isfinite(sigma) && std::isfinite(line.y[t]);
-        band.low.push_back(shown ? std::max(-bound, line.y[t] - 1.96 * sigma) : kNaN);
-        band.high.push_back(shown ? std::min(bound, line.y[t] + 1.96 * sigma) : kNaN);
+        band.low.push_back(shown ? std::max(-bound, line.y[t] - numerics::kNormal95 * sigma) : kNaN);
+        band.high.push_back(shown ? std::min(bound, line.y[t] + numerics::kNormal95 * sigma) : kNaN);
       }
       if (m + 1 == e.trackers.size()) line.band = std::move(band);
       panel.lines.push_back(std::move(line));

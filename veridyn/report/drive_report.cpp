@@ -8,6 +8,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/deg_per_g.hpp"
+#include "veridyn/numerics/statistics.hpp"
 #include "veridyn/report/document/number_format.hpp"
 #include "veridyn/report/figures/curves.hpp"
 #include "veridyn/report/parts/analysis_sections.hpp"
@@ -55,7 +56,7 @@ struct Stretches {
       return k < values.size() ? values[k] : kNaN;
     };
     for (std::size_t k = 0; k < stamps.size(); ++k) {
-      const double half = 1.96 * at(sigma, k);
+      const double half = numerics::kNormal95 * at(sigma, k);
       append(stamps[k], factor * at(seen, k), factor * at(model, k), factor * (at(model, k) - half),
              factor * (at(model, k) + half));
     }

@@ -5,6 +5,9 @@
 
 #include <cmath>
 
+#include "tests/estimation/output_error/example_models.hpp"
+#include "veridyn/estimation/output_error/output_error.hpp"
+
 namespace veridyn::estimation::internal {
 namespace {
 
@@ -80,6 +83,89 @@ TEST(HoldUndetermined, KeepsASearchAtItsStartAlongTheRest) {
   EXPECT_NEAR(x(2), 0.3, 1e-9);
   // In units of the bounds the change is along (sigma_a, sigma_b): b, known less, moves a hundred times as far.
   EXPECT_NEAR((x(1) + 2.0) / (x(0) - 1.0), 100.0, 1.0);
+}
+
+using namespace testing_support;
+
+/// Two columns that differ by a millionth, and a third: the sum of two parameters is known, their difference is not.
+Static valley() {
+  RowMatrix X(200, 3);
+  for (Index k = 0; k < X.rows(); ++k) {
+    const double t = 0.05 * static_cast<double>(k);
+    X(k, 0) = std::sin(t);
+    X(k, 1) = std::sin(t) + 1e-3 * std::cos(3.0 * t);
+    X(k, 2) = std::cos(t);
+  }
+  Static model({{X}});
+  for (ModelParameter& p : model.unknowns) {
+    p.start = 1.0;
+    p.low = 0.5;
+    p.high = 1.5;
+  }
+  return model;
+}
+
+TEST(UndeterminedDirections, HoldsWhatTheDataDoNotDetermine) {
+  const Static model = valley();
+  std::mt19937_64 generator(8);
+  std::normal_distribution<double> noise(0.0, 1e-2);
+  RowMatrix z(200, 1);
+  ModelResponse response;
+  ASSERT_TRUE(model.respond(0, Eigen::Vector3d(1.1, 1.1, 0.9), {}, response));
+  for (Index k = 0; k < 200; ++k) z(k, 0) = response.output(k, 0) + noise(generator);
+  OutputErrorOptions options{.noise = OutputNoise::kGiven, .noise_start = Eigen::VectorXd::Constant(1, 1e-2)};
+  const OutputErrorEstimate wandering = output_error(model, {z}, options);
+  options.hold_undetermined = true;
+  const OutputErrorEstimate held = output_error(model, {z}, options);
+  ASSERT_TRUE(wandering.usable() && held.usable()) << held.message;
+  // sigma of the difference is 1e-2/(1e-3 sqrt(100)) = 1 per unit; the bounds allow 0.29 each. Noise drives the search.
+  EXPECT_GT(std::abs(wandering.theta(0) - wandering.theta(1)), 0.05);
+  // The sum is found, the difference stays where it was; the third parameter is as before.
+  EXPECT_NEAR(held.theta(0) + held.theta(1), 2.2, 0.01);
+  EXPECT_NEAR(held.theta(0), held.theta(1), 1e-3);
+  EXPECT_NEAR(held.theta(2), 0.9, 0.005);
+  ASSERT_EQ(held.held.size(), 1u);
+  EXPECT_THAT(held.held[0].text, ::testing::AllOf(::testing::HasSubstr("theta0"), ::testing::HasSubstr("theta1")));
+  EXPECT_THAT(held.message, ::testing::HasSubstr("stay where the search began"));
+  EXPECT_EQ(held.parameters[0].status, ParameterStatus::kNotExcited);
+  EXPECT_EQ(held.parameters[2].status, ParameterStatus::kIdentified);
+  EXPECT_TRUE(std::isfinite(held.parameters[2].sigma));
+}
+
+TEST(UndeterminedDirections, SearchesFromElsewhereAndHoldsAtTheStartAllTheSame) {
+  const Static model = valley();
+  RowMatrix z(200, 1);
+  ModelResponse response;
+  ASSERT_TRUE(model.respond(0, Eigen::Vector3d(1.1, 1.1, 0.9), {}, response));
+  z = response.output;
+  OutputErrorOptions options{
+      .noise = OutputNoise::kGiven, .noise_start = Eigen::VectorXd::Constant(1, 1e-2), .hold_undetermined = true};
+  const OutputErrorEstimate here = output_error(model, {z}, options);
+  options.search_start = Eigen::Vector3d(1.4, 0.8, 1.2);
+  const OutputErrorEstimate there = output_error(model, {z}, options);
+  ASSERT_TRUE(here.usable() && there.usable()) << there.message;
+  EXPECT_LT((here.theta - there.theta).cwiseAbs().maxCoeff(), 1e-3);
+  EXPECT_EQ(there.held.size(), 1u);
+  options.search_start = Eigen::Vector3d(1.4, 0.8, 1e3);
+  EXPECT_THROW((void)output_error(model, {z}, options), InputError);
+  options.search_start = Eigen::Vector2d(1.4, 0.8);
+  EXPECT_THROW((void)output_error(model, {z}, options), InputError);
+}
+
+TEST(UndeterminedDirections, HoldsNothingThatTheDataDetermine) {
+  Static model = valley();
+  RowMatrix z(200, 1);
+  ModelResponse response;
+  ASSERT_TRUE(model.respond(0, Eigen::Vector3d(1.2, 0.9, 0.9), {}, response));
+  z = response.output;
+  const OutputErrorEstimate e = output_error(
+      model, {z},
+      {.noise = OutputNoise::kGiven, .noise_start = Eigen::VectorXd::Constant(1, 1e-6), .hold_undetermined = true});
+  ASSERT_TRUE(e.usable()) << e.message;
+  EXPECT_TRUE(e.held.empty());
+  EXPECT_LT((e.theta - Eigen::Vector3d(1.2, 0.9, 0.9)).cwiseAbs().maxCoeff(), 1e-4);
+  model.unknowns[0].high = kInfinity;
+  EXPECT_THROW((void)output_error(model, {z}, {.hold_undetermined = true}), InputError);
 }
 
 }  // namespace

@@ -187,8 +187,7 @@ CoefficientChecks check_fit(const CoefficientFit& fit, double row_interval_s, co
   if (!checks.has_holdout) return checks;
   checks.holdout_fit = fit_on(unseen, chosen.theta);
   checks.flight_fits = fits_by_flight(held_out, view.flights, chosen.theta);
-  constexpr double kBand95 = 1.96;
-  const double band = kBand95 * std::sqrt(residual.squaredNorm() / static_cast<double>(residual.size()));
+  const double band = numerics::kNormal95 * std::sqrt(residual.squaredNorm() / static_cast<double>(residual.size()));
   const Eigen::ArrayXd missed = (unseen.regressand - unseen.regressors * chosen.theta).array().abs();
   checks.outside_bands = static_cast<double>((missed > band).count()) / static_cast<double>(missed.size());
   if (const std::optional<Eigen::VectorXd> start = start_values(fit.model, view.subject))

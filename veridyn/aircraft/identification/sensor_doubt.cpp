@@ -7,14 +7,13 @@
 #include <cmath>
 
 #include "veridyn/core/index.hpp"
+#include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::aircraft {
 namespace {
 
 using estimation::Parameter;
 using estimation::ParameterStatus;
-
-constexpr double kDoubt95 = 1.96;
 
 bool has_interval(const Parameter& p) {
   return p.status == ParameterStatus::kIdentified || p.status == ParameterStatus::kWeak;
@@ -80,7 +79,7 @@ estimation::Evidence doubt_row(const std::string& coefficient, std::span<const P
 std::vector<Parameter> weak_by_doubt(std::vector<Parameter> parameters, const Eigen::VectorXd& doubt) {
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     Parameter& p = parameters[i];
-    const double half = kDoubt95 * std::hypot(p.sigma, doubt(static_cast<Eigen::Index>(i)));
+    const double half = numerics::kNormal95 * std::hypot(p.sigma, doubt(static_cast<Eigen::Index>(i)));
     if (p.status == ParameterStatus::kIdentified && half > estimation::kWeakShare * std::abs(p.value))
       p.status = ParameterStatus::kWeak;
   }

@@ -86,8 +86,8 @@ InnovationSummary InnovationMonitor::summary() const {
   const double n = static_cast<double>(used_);
   s.mean = sum_ / n;
   s.nis = sum_squares_ / n;
-  s.nis_bound95 = 1.96 * std::sqrt(2.0 / n);
-  s.white_bound95 = 1.96 / std::sqrt(n);
+  s.nis_bound95 = numerics::kNormal95 * std::sqrt(2.0 / n);
+  s.white_bound95 = numerics::kNormal95 / std::sqrt(n);
   if (used_ > kLags + 1 && sum_squares_ > 0.0) {
     s.lag1 = products_[0] / sum_squares_;
     for (std::size_t lag = 0; lag < kLags; ++lag) {

@@ -11,8 +11,6 @@
 #include "veridyn/estimation/regression/augmented_qr.hpp"
 #include "veridyn/numerics/linear_algebra/cholesky.hpp"
 #include "veridyn/numerics/linear_algebra/orthogonal.hpp"
-#include "veridyn/numerics/linear_algebra/products.hpp"
-#include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
 #include "veridyn/numerics/parallel.hpp"
 
 namespace veridyn::estimation::internal {
@@ -314,84 +312,6 @@ bool OutputErrorProblem::valid() const {
   return std::all_of(segments_.begin(), segments_.end(), [](const Segment& s) { return s.triangle.valid; });
 }
 
-void OutputErrorProblem::set_noise(const Eigen::MatrixXd& noise) {
-  noise_ = noise;
-  for (Index j = 0; j < outputs_; ++j)
-    noise_(j, j) = std::max(noise_(j, j), noise_floor_.size() > 0 ? noise_floor_(j) * noise_floor_(j) : 0.0);
-  if (options_.noise != OutputNoise::kFull) {
-    whitener_ = noise_.diagonal().cwiseSqrt().cwiseInverse().asDiagonal();
-    return;
-  }
-  // Outputs that repeat each other would make R singular: correlations are kept off 1.
-  const Eigen::VectorXd sd = noise_.diagonal().cwiseSqrt();
-  const Eigen::VectorXd inverse_sd = sd.cwiseInverse();
-  const numerics::SymmetricEigen eigen = numerics::symmetric_eigen(numerics::scaled(inverse_sd, noise_, inverse_sd));
-  if (eigen.values(0) < 1e-10)
-    noise_ = numerics::scaled(sd, numerics::from_eigen(eigen.vectors, eigen.values.cwiseMax(1e-10)), sd);
-  whitener_ = numerics::Cholesky(noise_).solve_lower(Eigen::MatrixXd::Identity(outputs_, outputs_));
-}
-
-void OutputErrorProblem::start_noise() {
-  if (options_.noise_start.size() > 0) return set_noise(options_.noise_start.cwiseAbs2().asDiagonal());
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(outputs_), count = sum;
-  for (const Segment& s : segments_) {
-    for (Index k = 0; k < s.residual.rows(); ++k) {
-      for (Index j = 0; j < outputs_; ++j) {
-        if (!std::isfinite(s.residual(k, j))) continue;
-        sum(j) += s.residual(k, j) * s.residual(k, j);
-        count(j) += 1.0;
-      }
-    }
-  }
-  Eigen::VectorXd variance = Eigen::VectorXd::Ones(outputs_);
-  for (Index j = 0; j < outputs_; ++j)
-    if (count(j) > 0.0 && sum(j) > 0.0) variance(j) = sum(j) / count(j);
-  set_noise(variance.asDiagonal());
-}
-
-double OutputErrorProblem::update_noise() {
-  if (!estimates_noise()) return 0.0;
-  const bool full = options_.noise == OutputNoise::kFull;
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(outputs_, outputs_);
-  Eigen::VectorXd count = Eigen::VectorXd::Zero(outputs_);
-  for (const Segment& segment : segments_) {
-    const RowMatrix& r = segment.residual;
-    for (Index k = 0; k < r.rows(); ++k) {
-      std::vector<Index> seen, missing;
-      for (Index j = 0; j < outputs_; ++j) (std::isfinite(r(k, j)) ? seen : missing).push_back(j);
-      if (!full) {
-        for (const Index j : seen) {
-          sum(j, j) += r(k, j) * r(k, j);
-          count(j) += 1.0;
-        }
-        continue;
-      }
-      if (seen.empty()) continue;
-      count.array() += 1.0;
-      // Expectation step: missing residuals replaced by their conditional mean, their conditional covariance added.
-      Eigen::VectorXd e = Eigen::VectorXd::Zero(outputs_);
-      for (const Index j : seen) e(j) = r(k, j);
-      if (!missing.empty()) {
-        const Eigen::MatrixXd gain =
-            numerics::Cholesky(noise_(seen, seen)).solve(Eigen::MatrixXd(noise_(seen, missing))).transpose();
-        e(missing) = gain * e(seen);
-        sum(missing, missing) += noise_(missing, missing) - gain * noise_(seen, missing);
-      }
-      sum += e * e.transpose();
-    }
-  }
-  Eigen::MatrixXd updated = noise_;
-  for (Index i = 0; i < outputs_; ++i) {
-    for (Index j = 0; j < outputs_; ++j)
-      if (count(i) > 0.0 && (full || i == j)) updated(i, j) = sum(i, j) / count(i);
-  }
-  const Eigen::VectorXd before = noise_.diagonal().cwiseSqrt();
-  set_noise(updated);
-  double change = 0.0;
-  for (Index j = 0; j < outputs_; ++j) change = std::max(change, std::abs(std::sqrt(noise_(j, j)) / before(j) - 1.0));
-  return change;
-}
-
 bool OutputErrorProblem::reaches_bounds() const {
   const std::vector<const ModelParameter*> unknowns = shared_unknowns();
   for (std::size_t i = 0; i < unknowns.size(); ++i)
@@ -476,26 +396,6 @@ Eigen::MatrixXd OutputErrorProblem::spectral_filling(const ResidualSpectrum& spe
   Eigen::MatrixXd total = Eigen::MatrixXd::Zero(n, n);
   for (const Eigen::MatrixXd& part : parts) total += part;
   return total;
-}
-
-double OutputErrorProblem::negative_log_likelihood() const {
-  double sum = 0.0;
-  for (const Segment& segment : segments_) {
-    sum += 0.5 * segment.triangle.squares;
-    for (Index k = 0; k < segment.residual.rows(); ++k) {
-      std::vector<Index> seen;
-      for (Index j = 0; j < outputs_; ++j)
-        if (std::isfinite(segment.residual(k, j))) seen.push_back(j);
-      if (seen.empty()) continue;
-      if (options_.noise != OutputNoise::kFull) {
-        for (const Index j : seen) sum += 0.5 * std::log(noise_(j, j));
-      } else {
-        const Eigen::MatrixXd L = numerics::Cholesky(noise_(seen, seen)).L();
-        sum += L.diagonal().array().log().sum();
-      }
-    }
-  }
-  return sum;
 }
 
 std::vector<OutputFit> OutputErrorProblem::output_fits() const {

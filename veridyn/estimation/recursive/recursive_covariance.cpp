@@ -17,7 +17,6 @@
 namespace veridyn::estimation {
 namespace {
 
-constexpr double kNormal95 = 1.959963984540054;
 constexpr double kAutomaticBound = 10.0;
 
 // A S A for symmetric A and S. Plain loops: for these sizes a third of the time of general products.
@@ -169,9 +168,9 @@ void RecursiveRegression::State::add_unexcited_bound(const SmallMatrix& jacobian
       const SmallVector weighted = free_weight.cwiseProduct(unexcited.col(j));
       const SmallVector product = gtls.lazyProduct(weighted);
       const double variance = weighted.dot(product);
-      if (variance > 0.0 && std::isfinite(variance)) limit = std::max(limit, kNormal95 * std::sqrt(variance));
+      if (variance > 0.0 && std::isfinite(variance)) limit = std::max(limit, numerics::kNormal95 * std::sqrt(variance));
     }
-    const SmallVector q = unexcited.col(j).cwiseQuotient(free_weight) * (limit / kNormal95);
+    const SmallVector q = unexcited.col(j).cwiseQuotient(free_weight) * (limit / numerics::kNormal95);
     bound += q.lazyProduct(q.transpose());
   }
 }
@@ -348,8 +347,8 @@ RegressionEstimate RecursiveRegression::State::estimate(double significance) con
   for (Eigen::Index j = 0; j < unexcited_combinations.cols(); ++j) {
     const Eigen::VectorXd combination = unexcited_combinations.col(j);
     const double variance = combination.dot(result.covariance * combination);
-    result.unexcited.push_back(
-        {combination, kNormal95 * std::sqrt(std::max(0.0, variance)), describe_combination(combination, names)});
+    result.unexcited.push_back({combination, numerics::kNormal95 * std::sqrt(std::max(0.0, variance)),
+                                describe_combination(combination, names)});
   }
   add_collinearity(result);
   switch (termination) {

@@ -12,11 +12,11 @@
 #include "veridyn/estimation/regression/pca_total_least_squares.hpp"
 #include "veridyn/estimation/regression/total_least_squares.hpp"
 #include "veridyn/numerics/linear_algebra/cholesky.hpp"
+#include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::estimation::internal {
 namespace {
 
-constexpr double kNormal95 = 1.959963984540054;
 constexpr double kAutomaticBound = 10.0;
 
 // Pinned parameters moved to the regressand: [X, z] P = [X_free, z - X_pinned theta_0].
@@ -104,10 +104,11 @@ UnexcitedBound bound_unexcited(const PcaTotalLeastSquares& pca, const FreeParame
     double limit = given_limit > 0.0 ? given_limit : automatic;
     if (full.solved) {
       const Eigen::VectorXd weighted = free.weight.cwiseProduct(direction);
-      limit = std::max(limit, kNormal95 * std::sqrt(std::max(0.0, weighted.dot(full.covariance_white * weighted))));
+      limit = std::max(limit,
+                       numerics::kNormal95 * std::sqrt(std::max(0.0, weighted.dot(full.covariance_white * weighted))));
     }
     const Eigen::VectorXd q = direction.cwiseQuotient(free.weight);
-    out.covariance += (limit / kNormal95) * (limit / kNormal95) * q * q.transpose();
+    out.covariance += (limit / numerics::kNormal95) * (limit / numerics::kNormal95) * q * q.transpose();
     out.share += direction.cwiseAbs2();
     Eigen::VectorXd combination = free.lift * q;
     combination /= combination.norm();

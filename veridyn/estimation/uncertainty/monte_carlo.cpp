@@ -82,7 +82,7 @@ ErrorDistribution describe(std::vector<double>& error, double coverage) {
   for (const double e : error) squares += (e - d.mean) * (e - d.mean);
   d.sd = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, count - 1)));
   // The number of draws below a quantile is binomial.
-  const double spread = 1.959963984540054 * std::sqrt(p * (1.0 - p) / static_cast<double>(count));
+  const double spread = numerics::kNormal95 * std::sqrt(p * (1.0 - p) / static_cast<double>(count));
   d.endpoint_error = 0.5 * std::max(error[rank_of(p + spread, count)] - error[rank_of(p - spread, count)],
                                     error[rank_of(1.0 - p + spread, count)] - error[rank_of(1.0 - p - spread, count)]);
   return d;

@@ -7,14 +7,13 @@
 
 #include "veridyn/aircraft/reconstruction/information_bound.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/numerics/statistics.hpp"
 #include "veridyn/report/figures/curves.hpp"
 
 namespace veridyn::report {
 namespace {
 
 using namespace veridyn::aircraft;
-
-constexpr double kBand95 = 1.959963984540054;
 
 Line estimate_line(const Recording& recording, const std::string& channel, const char* label, double factor) {
   Line line{.name = label};
@@ -26,7 +25,7 @@ Line estimate_line(const Recording& recording, const std::string& channel, const
   if (sigma != nullptr && sigma->size() == value->size()) {
     Band band;
     for (std::size_t i = 0; i < line.y.size(); ++i) {
-      const double half = kBand95 * sigma->value[i] * factor;
+      const double half = numerics::kNormal95 * sigma->value[i] * factor;
       band.low.push_back(line.y[i] - half);
       band.high.push_back(line.y[i] + half);
     }

@@ -6,6 +6,7 @@
 
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::report {
 
@@ -67,8 +68,8 @@ Line followed_line(std::vector<double> value, std::span<const double> sigma, dou
   for (std::size_t k = 0; k < sigma.size(); ++k) {
     const bool shown = std::isfinite(sigma[k]) && std::abs(line.y[k]) <= limit;
     if (!shown) line.y[k] = kNaN;
-    band.low.push_back(shown ? std::max(-limit, line.y[k] - 1.96 * sigma[k]) : kNaN);
-    band.high.push_back(shown ? std::min(limit, line.y[k] + 1.96 * sigma[k]) : kNaN);
+    band.low.push_back(shown ? std::max(-limit, line.y[k] - numerics::kNormal95 * sigma[k]) : kNaN);
+    band.high.push_back(shown ? std::min(limit, line.y[k] + numerics::kNormal95 * sigma[k]) : kNaN);
   }
   line.band = std::move(band);
   return line;

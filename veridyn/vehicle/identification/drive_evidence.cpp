@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/deg_per_g.hpp"
 #include "veridyn/numerics/statistics.hpp"
 #include "veridyn/recording/sample_evidence.hpp"
 #include "veridyn/recording/sensor_matrix.hpp"
@@ -90,8 +91,8 @@ Evidence relation_row(const DriveRelation& r, const std::vector<DriveCulprit>& s
     row.text += fmt::format(" and hardly moves with it (correlation {:.2f})", r.correlation);
   if (may_lean(r, gravity_removed)) {
     const double gradient = (r.middle() - 1.0) / gravity;
-    row.text += fmt::format(": a body that leans by {:.1f} deg/g would show that, or a wrong scale",
-                            gradient * gravity / kDegree);
+    row.text +=
+        fmt::format(": a body that leans by {:.1f} deg/g would show that, or a wrong scale", deg_per_g(gradient));
     row.advice = fmt::format("record roll, or give signals.roll_gradient (here {:.4f}), or check the scale of accel_y",
                              gradient);
   } else if (suspects.size() == 1) {
@@ -270,7 +271,7 @@ Evidence explained_by_roll(Evidence row, const estimation::Parameter* roll_gradi
   row.text = fmt::format(
       "accel_y reads {:.3g} times what yaw_rate x speed says, as that of a body does which leans by "
       "{:.1f} deg/g",
-      row.value, lean / kDegree);
+      row.value, deg_per_g(roll_gradient->value));
   row.advice.clear();
   return row;
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "veridyn/core/error.hpp"
@@ -86,6 +87,56 @@ bool frees(DriveStructure structure, DriveUnknown unknown) {
       return saturates(structure);
     default:
       return has_roll(structure);
+  }
+}
+
+/// Lowest and highest value of an unknown that starts at `start`; `factor` is `DriveModelOptions::search_factor`.
+std::pair<double, double> bounds_of(DriveUnknown unknown, double start, double wheelbase, double factor) {
+  switch (unknown) {
+    case DriveUnknown::kCf:
+    case DriveUnknown::kCr:
+    case DriveUnknown::kIz:
+      return {start / factor, factor * start};
+    case DriveUnknown::kA:
+      return {0.02 * wheelbase, 0.98 * wheelbase};
+    case DriveUnknown::kMu:
+      return {0.02, 5.0};
+    case DriveUnknown::kShape:
+      return {1.0, 1.99};
+    case DriveUnknown::kCurvature:
+      return {-10.0, 1.0};
+    case DriveUnknown::kRollGradient:
+      return {0.0, 0.1};
+    case DriveUnknown::kRollFrequency:
+      return {0.4 * start, 2.5 * start};
+    case DriveUnknown::kRollDamping:
+      return {0.05, 1.2};
+    case DriveUnknown::kRollArm:
+      return {0.0, wheelbase};
+    case DriveUnknown::kLoadTransfer:
+      return {0.0, 2.0};
+    case DriveUnknown::kLoadTransferLoss:
+      return {0.0, 1.0};
+    case DriveUnknown::kLoadTransferBalance:
+      return {-1.0, 1.0};
+    case DriveUnknown::kDownforceF:
+    case DriveUnknown::kDownforceR:
+      return {-2e-4, 1e-2};
+    case DriveUnknown::kLoadSensitivity:
+      return {-1.0, 3.0};
+    case DriveUnknown::kFrontForceShare:
+      return {0.0, 1.0};
+    case DriveUnknown::kRelaxationLength:
+      return {kShortestRelaxation * wheelbase, wheelbase};
+    case DriveUnknown::kSteerScale:
+    case DriveUnknown::kAccelYScale:
+      return {-0.9, kInfinity};
+    case DriveUnknown::kSteerDelay:
+    case DriveUnknown::kYawRateDelay:
+    case DriveUnknown::kAccelYDelay:
+      return {-kLongestDelay_s, kLongestDelay_s};
+    default:
+      return {-kInfinity, kInfinity};
   }
 }
 
@@ -177,53 +228,18 @@ DriveModelOptions with_geometry(DriveModelOptions options, const VehicleParamete
   return options;
 }
 
-std::pair<double, double> bounds_of(DriveUnknown unknown, double start, double wheelbase, double factor) {
-  switch (unknown) {
-    case DriveUnknown::kCf:
-    case DriveUnknown::kCr:
-    case DriveUnknown::kIz:
-      return {start / factor, factor * start};
-    case DriveUnknown::kA:
-      return {0.02 * wheelbase, 0.98 * wheelbase};
-    case DriveUnknown::kMu:
-      return {0.02, 5.0};
-    case DriveUnknown::kShape:
-      return {1.0, 1.99};
-    case DriveUnknown::kCurvature:
-      return {-10.0, 1.0};
-    case DriveUnknown::kRollGradient:
-      return {0.0, 0.1};
-    case DriveUnknown::kRollFrequency:
-      return {0.4 * start, 2.5 * start};
-    case DriveUnknown::kRollDamping:
-      return {0.05, 1.2};
-    case DriveUnknown::kRollArm:
-      return {0.0, wheelbase};
-    case DriveUnknown::kLoadTransfer:
-      return {0.0, 2.0};
-    case DriveUnknown::kLoadTransferLoss:
-      return {0.0, 1.0};
-    case DriveUnknown::kLoadTransferBalance:
-      return {-1.0, 1.0};
-    case DriveUnknown::kDownforceF:
-    case DriveUnknown::kDownforceR:
-      return {-2e-4, 1e-2};
-    case DriveUnknown::kLoadSensitivity:
-      return {-1.0, 3.0};
-    case DriveUnknown::kFrontForceShare:
-      return {0.0, 1.0};
-    case DriveUnknown::kRelaxationLength:
-      return {kShortestRelaxation * wheelbase, wheelbase};
-    case DriveUnknown::kSteerScale:
-    case DriveUnknown::kAccelYScale:
-      return {-0.9, kInfinity};
-    case DriveUnknown::kSteerDelay:
-    case DriveUnknown::kYawRateDelay:
-    case DriveUnknown::kAccelYDelay:
-      return {-kLongestDelay_s, kLongestDelay_s};
-    default:
-      return {-kInfinity, kInfinity};
-  }
+estimation::ModelParameter model_parameter(DriveUnknown unknown, const DriveModelOptions& options, double wheelbase) {
+  estimation::ModelParameter p;
+  p.name = std::string(kDriveUnknownNames[unknown]);
+  p.unit = std::string(kDriveUnknownUnits[unknown]);
+  p.start = options.start[unknown];
+  p.prior_sigma = options.prior[unknown];
+  p.fixed = !options.free[unknown];
+  // Bounds must hold at the start, whatever was given.
+  const auto [low, high] = bounds_of(unknown, p.start, wheelbase, options.search_factor);
+  p.low = std::min(low, p.start);
+  p.high = std::max(high, p.start);
+  return p;
 }
 
 DriveModelOptions with_structure(DriveModelOptions options, DriveStructure structure) {

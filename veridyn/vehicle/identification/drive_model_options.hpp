@@ -2,11 +2,11 @@
 
 #include <cstddef>
 #include <string_view>
-#include <utility>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/enum_array.hpp"
 #include "veridyn/core/study.hpp"
+#include "veridyn/estimation/output_error/parametric_model.hpp"
 #include "veridyn/vehicle/identification/drive_structure.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
 
@@ -146,8 +146,9 @@ inline constexpr double kShortestRelaxation = 0.04;
 
 /// How late steering and outputs may be, either way [s]: a segment is driven by what was recorded so far around it.
 inline constexpr double kLongestDelay_s = 0.5;
-/// Lowest and highest value of an unknown that starts at `start`; `factor` is `DriveModelOptions::search_factor`.
-[[nodiscard]] std::pair<double, double> bounds_of(DriveUnknown unknown, double start, double wheelbase, double factor);
+/// An unknown as the options have it, with the bounds between which it is searched.
+[[nodiscard]] estimation::ModelParameter model_parameter(DriveUnknown unknown, const DriveModelOptions& options,
+                                                         double wheelbase);
 
 /// The options for a structure, whose unknowns are free.
 [[nodiscard]] DriveModelOptions with_structure(DriveModelOptions options, DriveStructure structure);

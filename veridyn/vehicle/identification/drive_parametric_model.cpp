@@ -12,6 +12,7 @@
 #include "veridyn/numerics/modulating_kernel.hpp"
 #include "veridyn/numerics/ode.hpp"
 #include "veridyn/numerics/signal_band.hpp"
+#include "veridyn/numerics/statistics.hpp"
 #include "veridyn/vehicle/identification/sampled_input.hpp"
 #include "veridyn/vehicle/tyre/fiala_tyre.hpp"
 #include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
@@ -56,33 +57,9 @@ typename LoadTransfer<Scalar>::Effect load_transfer_of(DriveStructure structure)
                                                       : Effect::kNone;
 }
 
-double rms_of(const std::vector<double>& x) {
-  double power = 0.0, count = 0.0;
-  for (const double v : x) {
-    if (!std::isfinite(v)) continue;
-    power += v * v;
-    count += 1.0;
-  }
-  return std::sqrt(power / std::max(1.0, count));
-}
-
 std::vector<double> smoothed(const std::vector<double>& x, double rate_Hz, double cutoff_Hz) {
   if (!(cutoff_Hz > 0.0) || x.empty()) return x;
   return numerics::filter(x, numerics::modulating_kernel(rate_Hz, cutoff_Hz).smooth);
-}
-
-estimation::ModelParameter model_parameter(DriveUnknown unknown, const DriveModelOptions& options, double wheelbase) {
-  estimation::ModelParameter p;
-  p.name = std::string(kDriveUnknownNames[unknown]);
-  p.unit = std::string(kDriveUnknownUnits[unknown]);
-  p.start = options.start[unknown];
-  p.prior_sigma = options.prior[unknown];
-  p.fixed = !options.free[unknown];
-  // Bounds must hold at the start, whatever was given.
-  const auto [low, high] = bounds_of(unknown, p.start, wheelbase, options.search_factor);
-  p.low = std::min(low, p.start);
-  p.high = std::max(high, p.start);
-  return p;
 }
 
 }  // namespace
@@ -106,7 +83,7 @@ DriveParametricModel::DriveParametricModel(const DriveSignals& signals, std::spa
   const GridSignal& steer = signals[DriveSignal::kSteer];
   if (options.smoothing_Hz < 0.0) {
     numerics::BandLimited limited =
-        numerics::band_limited(steer.value, grid_.rate_Hz(), kNoNoise * rms_of(steer.value));
+        numerics::band_limited(steer.value, grid_.rate_Hz(), kNoNoise * numerics::rms(steer.value));
     steer_ = std::move(limited.value);
     steer_error_share_ = limited.band_Hz > 0.0 ? limited.noise_share : 0.0;
   } else {
@@ -514,11 +491,10 @@ bool DriveParametricModel::moves_loads() const {
 DriveParametricModel::SpeedRange DriveParametricModel::speeds() const {
   double slowest = kInfinity, fastest = 0.0;
   for (const Segment& segment : segments_) {
-    for (Eigen::Index k = 0; k < segment.samples; ++k) {
-      const double u = speed_[segment.begin + static_cast<std::size_t>(k)];
-      slowest = std::min(slowest, u);
-      fastest = std::max(fastest, u);
-    }
+    const auto [low, high] =
+        std::ranges::minmax(std::span(speed_).subspan(segment.begin, static_cast<std::size_t>(segment.samples)));
+    slowest = std::min(slowest, low);
+    fastest = std::max(fastest, high);
   }
   return {slowest, fastest};
 }

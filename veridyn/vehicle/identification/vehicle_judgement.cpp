@@ -8,8 +8,8 @@
 
 #include "veridyn/core/index.hpp"
 #include "veridyn/estimation/judgement/agreement.hpp"
+#include "veridyn/vehicle/identification/axle_estimate.hpp"
 #include "veridyn/vehicle/identification/drive_evidence.hpp"
-#include "veridyn/vehicle/identification/drive_regression.hpp"
 #include "veridyn/vehicle/identification/structure_doubt.hpp"
 #include "veridyn/vehicle/identification/vehicle_plausibility.hpp"
 

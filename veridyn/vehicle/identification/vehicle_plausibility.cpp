@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/deg_per_g.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -61,7 +62,7 @@ std::vector<Evidence> plausibility(std::span<const Parameter> parameters, const 
                     .value = per_g,
                     .limit = per_g < 0.0 ? kUndersteer.low : kUndersteer.high,
                     .scale = "rad per g",
-                    .text = fmt::format("the understeer is {:.1f} deg/g{}", per_g / kDegree,
+                    .text = fmt::format("the understeer is {:.1f} deg/g{}", deg_per_g(K->value),
                                         outcome == Outcome::kPassed ? "" : ", where vehicles have -3 to 11"),
                     .bears_on = Purpose::kParameters,
                     .advice = outcome == Outcome::kPassed ? "" : units});

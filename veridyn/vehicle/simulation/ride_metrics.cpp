@@ -10,12 +10,6 @@
 namespace veridyn::vehicle {
 namespace {
 
-double rms(std::span<const double> x) {
-  double sum = 0.0;
-  for (const double value : x) sum += value * value;
-  return std::sqrt(sum / static_cast<double>(x.size()));
-}
-
 double mean(std::span<const double> x) {
   double sum = 0.0;
   for (const double value : x) sum += value;
@@ -70,17 +64,18 @@ std::vector<Metric> ride_metrics(const VehicleTrajectory& t) {
   if (t.heave_rate.size() < 16 || t.heave_rate.size() != t.size()) return list;
   const double step = (t.time.back() - t.time.front()) / static_cast<double>(t.size() - 1);
   const std::vector<double> acceleration = derivative(t.heave_rate, step);
-  list.push_back({"vertical_acceleration_rms", rms(acceleration), "m/s^2", "", "of the sprung mass"});
+  list.push_back({"vertical_acceleration_rms", numerics::rms(acceleration), "m/s^2", "", "of the sprung mass"});
   list.push_back({"weighted_vertical_acceleration_rms", weighted_rms(acceleration, 1.0 / step, iso2631_weight), "m/s^2",
                   "ISO 2631-1", "weighted with W_k; above 0.315 a little, above 0.8 clearly uncomfortable"});
   double travel = 0.0, load = 0.0;
   for (std::size_t wheel = 0; wheel < kWheels; ++wheel) {
-    if (t.suspension_travel[wheel].size() == t.size()) travel = std::max(travel, rms(t.suspension_travel[wheel]));
+    if (t.suspension_travel[wheel].size() == t.size())
+      travel = std::max(travel, numerics::rms(t.suspension_travel[wheel]));
     if (t.Fz[wheel].size() != t.size()) continue;
     std::vector<double> change = t.Fz[wheel];
     const double middle = mean(change);
     for (double& value : change) value -= middle;
-    if (middle > 0.0) load = std::max(load, rms(change) / middle);
+    if (middle > 0.0) load = std::max(load, numerics::rms(change) / middle);
   }
   if (t.suspension_travel[0].size() == t.size()) {
     list.push_back({"suspension_travel_rms", travel, "m", "", "of the wheel that moves most"});

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "veridyn/core/index.hpp"
+#include "veridyn/numerics/filtered_noise.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -31,29 +32,7 @@ enum Column : std::size_t {
   kShifted
 };
 
-/// Noise of a row [x..., z] from white noise of the sensors.
-class NoiseTerms {
- public:
-  NoiseTerms(Eigen::Index columns, const std::array<double, 4>& noise, std::size_t taps) : noise_(noise) {
-    for (Eigen::MatrixXd& t : taps_) t = Eigen::MatrixXd::Zero(signed_index(taps), columns);
-  }
-  void add(Eigen::Index column, std::size_t source, double coefficient, const FirKernel& kernel) {
-    taps_[source].col(column) +=
-        coefficient * Eigen::Map<const Eigen::VectorXd>(kernel.taps.data(), signed_index(kernel.taps.size()));
-  }
-  [[nodiscard]] Eigen::MatrixXd covariance() const {
-    const Eigen::Index n = taps_[0].cols();
-    Eigen::MatrixXd W = Eigen::MatrixXd::Zero(n, n);
-    for (std::size_t i = 0; i < taps_.size(); ++i) W += noise_[i] * noise_[i] * taps_[i].transpose() * taps_[i];
-    // Without noise there is still rounding.
-    W(n - 1, n - 1) += 1e-16;
-    return W;
-  }
-
- private:
-  std::array<double, 4> noise_;
-  std::array<Eigen::MatrixXd, 4> taps_;
-};
+/// Sensors whose noise enters, by their place in the array of their sigmas.
 constexpr std::size_t kSteerNoise = 0, kYawNoise = 2, kAccelNoise = 3;
 
 }  // namespace
@@ -249,22 +228,29 @@ Eigen::MatrixXd AxleRows::noise_covariance(TrackedAxle axle, const std::array<do
   const FirKernel &h = kernel_.smooth, &d = kernel_.first, &dd = kernel_.second;
   const VehicleParameters<double>& p = vehicle_;
   const double k = p.I_z / p.mass, gain = 0.5 * p.mass / p.wheelbase();
-  NoiseTerms terms(axle == TrackedAxle::kUndersteer ? 4 : 3, noise, h.taps.size());
+  std::array<double, 4> variances{};
+  for (std::size_t i = 0; i < noise.size(); ++i) variances[i] = noise[i] * noise[i];
+  numerics::FilteredNoise row(axle == TrackedAxle::kUndersteer ? 4 : 3, variances, h.taps.size());
+  const auto with_rounding = [&row] {  // which is left without noise
+    Eigen::MatrixXd W = row.covariance();
+    W(W.rows() - 1, W.cols() - 1) += 1e-16;
+    return W;
+  };
   if (axle == TrackedAxle::kUndersteer) {
-    terms.add(0, kAccelNoise, understeer_scale(), h);
-    terms.add(1, kYawNoise, lag_scale(), d);
-    terms.add(3, kSteerNoise, 1.0, h);
-    terms.add(3, kYawNoise, -p.wheelbase() / u, h);
-    return terms.covariance();
+    row.add(0, kAccelNoise, understeer_scale(), h);
+    row.add(1, kYawNoise, lag_scale(), d);
+    row.add(3, kSteerNoise, 1.0, h);
+    row.add(3, kYawNoise, -p.wheelbase() / u, h);
+    return with_rounding();
   }
   const bool front = axle == TrackedAxle::kFront;
-  terms.add(0, kAccelNoise, front ? gain * p.b / p.C_f : gain * p.a / p.C_r, d);
-  terms.add(0, kYawNoise, front ? gain * k / p.C_f : -gain * k / p.C_r, dd);
-  if (front) terms.add(2, kSteerNoise, 1.0, d);
-  terms.add(2, kAccelNoise, -1.0 / u, h);
-  terms.add(2, kYawNoise, 1.0, h);
-  terms.add(2, kYawNoise, front ? -p.a / u : p.b / u, d);
-  return terms.covariance();
+  row.add(0, kAccelNoise, front ? gain * p.b / p.C_f : gain * p.a / p.C_r, d);
+  row.add(0, kYawNoise, front ? gain * k / p.C_f : -gain * k / p.C_r, dd);
+  if (front) row.add(2, kSteerNoise, 1.0, d);
+  row.add(2, kAccelNoise, -1.0 / u, h);
+  row.add(2, kYawNoise, 1.0, h);
+  row.add(2, kYawNoise, front ? -p.a / u : p.b / u, d);
+  return with_rounding();
 }
 
 }  // namespace veridyn::vehicle

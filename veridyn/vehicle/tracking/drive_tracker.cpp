@@ -12,6 +12,7 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/estimation/analysis.hpp"
 #include "veridyn/estimation/recursive/tracking_evidence.hpp"
+#include "veridyn/numerics/statistics.hpp"
 #include "veridyn/vehicle/identification/vehicle_identification.hpp"
 #include "veridyn/vehicle/identification/vehicle_plausibility.hpp"
 
@@ -318,7 +319,7 @@ estimation::Estimate DriveTracker::estimate(const std::string& subject,
                             .sigma = sigma(axle),
                             .unit = std::string(kTrackedAxleUnits[axle]),
                             .status = ParameterStatus::kNotExcited};
-    double half = 1.96;  // of the 95 % interval [sigma]
+    double half = numerics::kNormal95;  // of the 95 % interval [sigma]
     if (started()) {
       const estimation::RegressionTracker& tracker = regression(axle);
       const estimation::RecursiveRegression& r = tracker.regression();
