@@ -12,6 +12,7 @@
 #include "veridyn/io/formats_not_read.hpp"
 #include "veridyn/io/log/mapped_file.hpp"
 #include "veridyn/io/matlab/mat.hpp"
+#include "veridyn/io/mavlink/tlog.hpp"
 #include "veridyn/io/opensim/storage.hpp"
 #include "veridyn/io/packets/packet_log.hpp"
 #include "veridyn/io/tables/csv_folder.hpp"
@@ -22,13 +23,14 @@
 namespace veridyn::io {
 namespace {
 
-enum class Format { kUnknown, kDataFlash, kDataFlashText, kULog, kMat, kStorage, kNpz, kPackets, kCsv };
+enum class Format { kUnknown, kDataFlash, kDataFlashText, kULog, kMat, kStorage, kNpz, kPackets, kCsv, kTlog };
 
 Format by_extension(const std::filesystem::path& path) {
   const std::string extension = lower(path.extension().string());
   if (extension == ".bin") return Format::kDataFlash;
   if (extension == ".log") return Format::kDataFlashText;
   if (extension == ".ulg" || extension == ".ulog") return Format::kULog;
+  if (extension == ".tlog") return Format::kTlog;
   if (extension == ".mat") return Format::kMat;
   if (extension == ".npz") return Format::kNpz;
   if (extension == ".sto" || extension == ".mot") return Format::kStorage;
@@ -40,6 +42,7 @@ Format by_content(std::string_view bytes) {
   if (is_ulog(bytes)) return Format::kULog;
   if (is_mat(bytes)) return Format::kMat;
   if (is_npz(bytes)) return Format::kNpz;
+  if (is_tlog(bytes)) return Format::kTlog;
   if (is_dataflash(bytes)) return Format::kDataFlash;
   if (is_dataflash_text(bytes)) return Format::kDataFlashText;
   if (is_storage(bytes)) return Format::kStorage;
@@ -63,6 +66,8 @@ const char* name_of(Format format) {
       return "ArduPilot DataFlash text";
     case Format::kULog:
       return "PX4 ULog";
+    case Format::kTlog:
+      return "MAVLink telemetry log";
     case Format::kMat:
       return "MATLAB";
     case Format::kStorage:
@@ -100,11 +105,11 @@ Log read_log(const std::filesystem::path& path, const ReadOptions& options) {
                                   : fmt::format(" (its name promises {}, its content is not)", name_of(expected));
     throw InputError(
         path.string(),
-        fmt::format(
-            "not a known log{}; known are ArduPilot DataFlash (.bin, .log), PX4 ULog (.ulg), MATLAB "
-            "(.mat), OpenSim storage (.sto, .mot), NumPy arrays (.npz, or folders of .npy), telemetry packets of games "
-            "and CSV",
-            claim));
+        fmt::format("not a known log{}; known are ArduPilot DataFlash (.bin, .log), PX4 ULog (.ulg), MAVLink telemetry "
+                    "(.tlog), MATLAB (.mat), OpenSim storage (.sto, .mot), NumPy arrays (.npz, or folders of .npy), "
+                    "telemetry packets of games "
+                    "and CSV",
+                    claim));
   }
   Log log;
   switch (format) {
@@ -116,6 +121,9 @@ Log read_log(const std::filesystem::path& path, const ReadOptions& options) {
       break;
     case Format::kULog:
       log = read_ulog(bytes, path.string());
+      break;
+    case Format::kTlog:
+      log = read_tlog(bytes, path.string());
       break;
     case Format::kMat:
       log = read_mat_file(path, options.csv);

@@ -17,8 +17,8 @@ struct ReadOptions {
   std::optional<PacketLayout> packet;  ///< the file holds such packets, one after the other
 };
 
-/// Reads a log of any known format: ArduPilot DataFlash (.bin) and its text form (.log), PX4 ULog (.ulg), MATLAB
-/// (.mat), OpenSim storage (.sto, .mot), telemetry packets of games, CSV, and folders of CSV or of NumPy arrays
+/// Reads a log of any known format: ArduPilot DataFlash (.bin) and its text form (.log), PX4 ULog (.ulg), telemetry
+/// logs of MAVLink (.tlog), MATLAB (.mat), OpenSim storage (.sto, .mot), telemetry packets of games, CSV, and folders of CSV or of NumPy arrays
 /// (`npy.hpp`). The content decides; the name's extension only where the content does not decide, and a name that
 /// promises another format than the content is noted in the damage.
 /// @throws InputError when the file is missing, empty, or of no known format.

@@ -1,0 +1,56 @@
+#include "veridyn/io/mavlink/tlog_clock.hpp"
+
+#include <algorithm>
+
+namespace veridyn::io::internal {
+namespace {
+
+/// A stamp that is so far before the latest is of a clock that began anew [s]; messages overtake each other by less.
+constexpr double kRestart_s = 10.0;
+/// Beyond it stamps count from 1970 [s].
+constexpr double kSince1970_s = 1e9;
+/// A message without a stamp is not so long after one that has one [s].
+constexpr double kLongestGuess_s = 5.0;
+
+}  // namespace
+
+void SenderClock::add(double received, std::optional<double> own) {
+  if (own) {
+    const std::int32_t kind = *own > kSince1970_s ? 1 : 0;
+    Clock& clock = clocks_[kind];
+    if (clock.epochs.empty() || *own < clock.epochs.back().latest - kRestart_s)
+      clock.epochs.push_back({received - *own, *own});
+    Epoch& epoch = clock.epochs.back();
+    epoch.delay = std::min(epoch.delay, received - *own);
+    epoch.latest = std::max(epoch.latest, *own);
+    clock.received = received;
+    clock.own = *own;
+    last_kind_ = kind;
+    packets_.push_back({*own, kind, clock.epochs.size() - 1});
+    return;
+  }
+  if (last_kind_ >= 0) {
+    const Clock& clock = clocks_[last_kind_];
+    const double passed = received - clock.received;
+    if (passed >= 0.0 && passed <= kLongestGuess_s) {
+      packets_.push_back({clock.own + passed, last_kind_, clock.epochs.size() - 1});
+      return;
+    }
+  }
+  packets_.push_back({received, -1, 0});
+}
+
+std::vector<double> SenderClock::times() const {
+  std::vector<double> times;
+  times.reserve(packets_.size());
+  for (const Packet& p : packets_)
+    times.push_back(p.kind < 0 ? p.time : p.time + clocks_[p.kind].epochs[p.epoch].delay);
+  return times;
+}
+
+std::size_t SenderClock::restarts() const {
+  const auto restarted = [](const Clock& clock) { return clock.epochs.empty() ? 0 : clock.epochs.size() - 1; };
+  return std::max(restarted(clocks_[0]), restarted(clocks_[1]));
+}
+
+}  // namespace veridyn::io::internal
