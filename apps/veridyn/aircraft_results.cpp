@@ -9,6 +9,7 @@
 
 #include "apps/veridyn/analysis_results.hpp"
 #include "apps/veridyn/console.hpp"
+#include "apps/veridyn/open_loop_results.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/aircraft/identification/flight_set.hpp"
 #include "veridyn/aircraft/model/jsbsim.hpp"
@@ -121,49 +122,6 @@ Recording validation_recording(const Validation& validation) {
   return recording;
 }
 
-/// Measured and predicted states of an axis, with the error of the prediction.
-Recording open_loop_recording(const OpenLoop& flown, Axis axis) {
-  Recording recording;
-  recording.source = "open_loop.csv";
-  recording.frame = Frame::kFrd;
-  TimeBase time;
-  for (const OpenLoopState& state : flown.states) {
-    if (state.axis != axis) continue;
-    if (!time) time = make_time_base(state.time);
-    const char* unit = state.unit == "deg" ? "rad" : state.unit == "deg/s" ? "rad/s" : "m/s";
-    recording.add(make_channel(state.name, unit, time, state.measured));
-    recording.add(make_channel(state.name + "_model", unit, time, state.predicted));
-    recording.add(make_channel("sigma_" + state.name, unit, time, state.sigma));
-  }
-  return recording;
-}
-
-std::string open_loop_scores_csv(const OpenLoop& flown) {
-  std::string text =
-      "flight,state,unit,rmse,normalised_rmse,theil,theil_bias,theil_variance,theil_covariance,inside_bands,horizon_s,"
-      "held_windows,windows,samples\n";
-  const auto add = [&text](const std::string& flight, const OpenLoopState& s) {
-    text += fmt::format("\"{}\",{},{},{},{},{},{},{},{},{},{},{},{},{}\n", flight, s.name, s.unit, s.fit.rmse,
-                        s.normalised_rmse, s.fit.theil, s.shares.bias, s.shares.variance, s.shares.covariance, s.inside,
-                        s.horizon_s, s.held, s.windows, s.fit.count);
-  };
-  for (const OpenLoopState& state : flown.states) add("all", state);
-  for (const OpenLoopFlight& flight : flown.by_flight)
-    for (const OpenLoopState& state : flight.states) add(flight.flight, state);
-  return text;
-}
-
-/// What was flown open loop: one table of scores, and the states of each axis, whose windows differ.
-void write_open_loop(OutputFolder& folder, const OpenLoop& flown) {
-  if (!flown.available()) return;
-  folder.write("open_loop_scores.csv", open_loop_scores_csv(flown));
-  for (const Axis axis : {Axis::kLongitudinal, Axis::kLateral}) {
-    const Recording recording = open_loop_recording(flown, axis);
-    if (!recording.channels().empty())
-      folder.write(fmt::format("open_loop_{}.csv", aircraft::to_string(axis)), io::to_csv(recording));
-  }
-}
-
 void print_identification(const FlightAnalysis& analysis, const std::filesystem::path& folder,
                           const CommonOptions& options) {
   print_judgement(options, analysis.estimate);
@@ -187,14 +145,7 @@ void print_identification(const FlightAnalysis& analysis, const std::filesystem:
     print_line(options, fmt::format("  hold-out     {}: MAE {:.3g} {}, R2 {:.3f}, Theil {:.3f}", q.name, q.fit.mae,
                                     q.unit, q.fit.r2, q.fit.theil));
   }
-  if (!analysis.open_loop.text.empty()) print_line(options, "  open loop    " + analysis.open_loop.text);
-  for (const OpenLoopState& s : analysis.open_loop.states) {
-    print_line(options,
-               fmt::format("  open loop    {}: RMSE {:.3g} {}, {:.2f} of what it varies, Theil {:.3f}, {:.0f} % "
-                           "in the bands, {} {:.1f} s ({} of {} windows held)",
-                           s.name, s.fit.rmse, s.unit, s.normalised_rmse, s.fit.theil, 100.0 * s.inside,
-                           2 * s.held > s.windows ? "not left in" : "left after", s.horizon_s, s.held, s.windows));
-  }
+  print_open_loop(options, analysis.open_loop);
   print_line(options, fmt::format("report: {}", (folder / "report.html").string()));
 }
 
@@ -207,13 +158,7 @@ Summary summary_of(const FlightAnalysis& analysis, const std::filesystem::path& 
   for (const CoefficientResult& r : analysis.coefficients) {
     summary["coefficients"][r.name] = Summary::object({{"verdict", to_string(r.verdict)}, {"reason", r.reason}});
   }
-  for (const OpenLoopState& s : analysis.open_loop.states)
-    summary["open_loop"][s.name] = Summary::object({{"rmse", s.fit.rmse},
-                                                    {"unit", s.unit},
-                                                    {"normalised_rmse", s.normalised_rmse},
-                                                    {"theil", s.fit.theil},
-                                                    {"inside_bands", s.inside},
-                                                    {"horizon_s", s.horizon_s}});
+  if (analysis.open_loop.available()) summary["open_loop"] = open_loop_summary(analysis.open_loop);
   summary["parameters"] = analysis.estimate.parameters.size();
   summary["warnings"] = analysis.estimate.warnings;
   return summary;
@@ -235,7 +180,7 @@ void write_identification(const StudyRun& run, OutputFolder& folder, const Fligh
   folder.write("coefficients.csv", io::to_csv(coefficient_recording(analysis)));
   if (analysis.validation.available())
     folder.write("validation.csv", io::to_csv(validation_recording(analysis.validation)));
-  write_open_loop(folder, analysis.open_loop);
+  write_open_loop(folder, analysis.open_loop, Frame::kFrd);
   folder.write("report.html", page);
   for (std::size_t k = 0; k < count; ++k) {
     const std::string number = count == 1 ? std::string() : fmt::format("_{}", k + 1);

@@ -9,6 +9,7 @@
 
 #include "apps/veridyn/analysis_results.hpp"
 #include "apps/veridyn/console.hpp"
+#include "apps/veridyn/open_loop_results.hpp"
 #include "apps/veridyn/profile_results.hpp"
 #include "apps/veridyn/study_tables.hpp"
 #include "apps/veridyn/version.hpp"
@@ -68,6 +69,7 @@ void write_results(OutputFolder& folder, const PreparedDrive& drive, const Vehic
   folder.write("parameters.csv", parameters_csv(analysis.estimate));
   folder.write("methods.csv", methods_csv(analysis));
   folder.write("validation.csv", prediction_csv(id.validation));
+  write_open_loop(folder, analysis.open_loop, Frame::kFlu);
   write_profiles(folder, id.profiles, profiled_parameters(id));
   if (drive.run) {
     folder.write("truth.csv", io::to_csv(to_recording(drive.run->trajectory)));
@@ -106,6 +108,7 @@ void print_analysis(const VehicleAnalysis& analysis, const std::filesystem::path
     print_line(options,
                fmt::format("  hold-out {:<16} R2 {:.3f}, RMSE {:.3g} {}", q.name, q.fit.r2, q.fit.rmse, q.unit));
   }
+  print_open_loop(options, analysis.open_loop);
   for (const std::string& warning : analysis.estimate.warnings) print_line(options, "warning: " + warning);
   print_line(options, id.reason);
   print_line(options, fmt::format("report: {}", (folder / "report.html").string()));
@@ -119,6 +122,7 @@ Summary summary_of(const VehicleAnalysis& analysis, const std::filesystem::path&
   s["reason"] = analysis.identification.reason;
   if (!analysis.identification.profiles.profiles.empty())
     s["profiles"] = profiles_summary(analysis.identification.profiles);
+  if (analysis.open_loop.available()) s["open_loop"] = open_loop_summary(analysis.open_loop);
   s["estimate"] = Summary::json(io::to_json(analysis.estimate));
   return s;
 }

@@ -54,7 +54,9 @@ void finish_drive_study(const StudyTable& root, const Progress& progress, DriveT
   static_cast<void>(vehicle::VehicleIdentifyOptions::read(root.table_or_empty("identify")));
   static_cast<void>(vehicle::DriveTrackOptions::read(root.table_or_empty("track")));
   const std::vector<std::string> spans{"all", "holdout"};
-  static_cast<void>(root.table_or_empty("validate").choice_or("segments", spans, "all"));
+  const StudyTable validate = root.table_or_empty("validate");
+  static_cast<void>(validate.choice_or("segments", spans, "all"));
+  static_cast<void>(vehicle::DriveOpenLoopOptions::read(validate));
   const auto check = [&](const auto& reader, std::initializer_list<const char*> tables) {
     try {
       static_cast<void>(reader(root));

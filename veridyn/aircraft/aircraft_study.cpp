@@ -241,23 +241,6 @@ estimation::ValidationMeasure measure_of(const numerics::FitMeasures& fit, const
   return {fit.mae, fit.rmse, fit.r2, fit.theil, unit};
 }
 
-/// In estimate.json: "open_loop.alpha".
-std::string open_loop_name(const OpenLoopState& state) { return "open_loop." + state.name; }
-
-/// The scores of what was flown open loop, in the terms of estimate.json.
-void add_open_loop(const OpenLoop& flown, estimation::Estimate& estimate) {
-  for (const OpenLoopState& state : flown.states) {
-    const std::string name = open_loop_name(state);
-    estimate.validation[name] = measure_of(state.fit, state.unit);
-    estimate.fit[name + ".normalised_rmse"] = state.normalised_rmse;
-    estimate.fit[name + ".theil_bias"] = state.shares.bias;
-    estimate.fit[name + ".theil_variance"] = state.shares.variance;
-    estimate.fit[name + ".theil_covariance"] = state.shares.covariance;
-    estimate.fit[name + ".inside_bands"] = state.inside;
-    estimate.fit[name + ".horizon_s"] = state.horizon_s;
-  }
-}
-
 /// What each of several recordings was for, and how well it is predicted.
 std::vector<estimation::RecordingUse> recordings_of(const FlightAnalysis& analysis, bool tried) {
   std::vector<estimation::RecordingUse> recordings = recording_uses(analysis.flights, tried);
@@ -270,10 +253,10 @@ std::vector<estimation::RecordingUse> recordings_of(const FlightAnalysis& analys
       if (flown.flight != recording.name) continue;
       for (const PredictedQuantity& q : flown.quantities) recording.validation[q.name] = measure_of(q.fit, q.unit);
     }
-    for (const OpenLoopFlight& flown : analysis.open_loop.by_flight) {
-      if (flown.flight != recording.name) continue;
-      for (const OpenLoopState& state : flown.states)
-        recording.validation[open_loop_name(state)] = measure_of(state.fit, state.unit);
+    for (const estimation::OpenLoopRecording& flown : analysis.open_loop.by_recording) {
+      if (flown.recording != recording.name) continue;
+      for (const estimation::OpenLoopState& state : flown.states)
+        recording.validation[estimation::open_loop_name(state)] = measure_of(state.fit, state.unit);
     }
   }
   return recordings;
@@ -287,7 +270,7 @@ estimation::Estimate summarise(std::span<const FlightStudy> studies, const Fligh
   for (const PredictedQuantity& q : analysis.validation.quantities) {
     estimate.validation[q.name] = measure_of(q.fit, q.unit);
   }
-  add_open_loop(analysis.open_loop, estimate);
+  estimation::add_open_loop(analysis.open_loop, estimate);
   estimate.warnings = warnings_of(studies, analysis);
   std::vector<estimation::Evidence> of_all = recording_rows(analysis.flights);
   for (const std::vector<estimation::Evidence>& rows :

@@ -15,9 +15,9 @@
 #include "veridyn/report/parts/aircraft_estimates.hpp"
 #include "veridyn/report/parts/aircraft_evidence.hpp"
 #include "veridyn/report/parts/aircraft_flights.hpp"
-#include "veridyn/report/parts/aircraft_open_loop.hpp"
 #include "veridyn/report/parts/aircraft_sensors.hpp"
 #include "veridyn/report/parts/analysis_sections.hpp"
+#include "veridyn/report/parts/open_loop_section.hpp"
 #include "veridyn/report/parts/remarks.hpp"
 
 namespace veridyn::report {
@@ -149,7 +149,7 @@ Document identification_report(const FlightStudy& study, const FlightAnalysis& a
   add(other_estimators_section(analysis));
   add(structure_section(analysis));
   add(validation_section(analysis));
-  add(open_loop_section(analysis));
+  add(open_loop_section(analysis.open_loop));
   add(flights_section(analysis));
   for (std::size_t i = 0; i < analysis.flights.size(); ++i) {
     if (!analysis.flights[i].usable()) continue;

@@ -44,7 +44,9 @@ VehicleStudy read_tables(const Study& study) {
   out.identify.model.gravity = out.signals.gravity;
   out.track = DriveTrackOptions::read(root.table_or_empty("track"));
   const std::vector<std::string> choices{"all", "holdout"};
-  out.validate_on_holdout_only = root.table_or_empty("validate").choice_or("segments", choices, "all") == "holdout";
+  const StudyTable validate = root.table_or_empty("validate");
+  out.validate_on_holdout_only = validate.choice_or("segments", choices, "all") == "holdout";
+  out.open_loop = DriveOpenLoopOptions::read(validate);
   return out;
 }
 
@@ -97,9 +99,35 @@ std::vector<TimeSpan> validation_spans(const DriveSegments& segments, bool holdo
   return spans;
 }
 
+/// The analysis with its estimate driven open loop, where the study asks for it, and what that says of the prediction.
+VehicleAnalysis driven_open_loop(VehicleAnalysis analysis, OpenLoopUse use, const estimation::Estimate& estimate,
+                                 const VehicleStudy& study, Progress& progress) {
+  if (!study.open_loop.asked() || progress.interrupted()) return analysis;
+  progress.stage("driving open loop");
+  analysis.open_loop =
+      drive_open_loop({analysis.signals, analysis.segments, use, study.vehicle, study.identify.model, estimate},
+                      study.open_loop, progress);
+  VehicleIdentification& id = analysis.identification;
+  for (estimation::Evidence& row : open_loop_evidence(analysis.open_loop)) {
+    if (!row.passed()) id.warnings.push_back(row.text);
+    id.checks.push_back(std::move(row));
+  }
+  id.judgement = estimation::judge(id.checks);
+  return analysis;
+}
+
+/// What was identified, without the error of mass and geometry, which a model that keeps these does not have.
+estimation::Estimate by_motion(const VehicleIdentification& identification, const std::string& subject) {
+  estimation::Estimate estimate = make_vehicle_estimate(identification, subject);
+  const VehicleEstimate* const best = identification.best();
+  if (best != nullptr && best->given_covariance.size() > 0) estimate.covariance -= best->given_covariance;
+  return estimate;
+}
+
 /// The results in the terms that all domains share.
 VehicleAnalysis with_results(VehicleAnalysis analysis, const VehicleStudy& study) {
   analysis.estimate = make_vehicle_estimate(analysis.identification, study.subject_name);
+  estimation::add_open_loop(analysis.open_loop, analysis.estimate);
   analysis.groups = {parameter_group(analysis.identification, study.subject_name)};
   analysis.predictions = analysis.identification.validation.quantities;
   analysis.truth = study.truth;
@@ -136,6 +164,8 @@ VehicleAnalysis identify(const VehicleStudy& study, Progress& progress) {
   out.identification = identify_parameters(
       {out.signals, out.segments, study.vehicle, study.signals, study.identify, recording}, progress);
   out.interrupted = out.identification.interrupted;
+  out = driven_open_loop(std::move(out), OpenLoopUse::kHoldout, by_motion(out.identification, study.subject_name),
+                         study, progress);
   std::vector<std::string> warnings = warnings_of(study, out.signals);
   if (!out.signals.gravity_removed && out.signals[DriveSignal::kAccelY].available() &&
       !study.identify.model.free[DriveUnknown::kAccelYScale] && !has_roll(out.identification.structure)) {
@@ -197,6 +227,10 @@ VehicleAnalysis validate(const VehicleStudy& study, const estimation::Estimate& 
   }
   id.warnings = warnings_of(study, out.signals);
   id.warnings.emplace_back("constant biases of steering, yaw rate and accel_y were fitted to this drive");
+  if (!spans.empty())
+    out = driven_open_loop(std::move(out),
+                           study.validate_on_holdout_only ? OpenLoopUse::kOtherHoldout : OpenLoopUse::kOtherDrive,
+                           estimate, study, progress);
   out.interrupted = progress.interrupted();
   out = with_results(std::move(out), study);
   out.estimate.parameters = estimate.parameters;

@@ -12,6 +12,7 @@
 #include "veridyn/core/study.hpp"
 #include "veridyn/estimation/estimate.hpp"
 #include "veridyn/vehicle/identification/drive_log.hpp"
+#include "veridyn/vehicle/identification/drive_open_loop.hpp"
 #include "veridyn/vehicle/identification/drive_segments.hpp"
 #include "veridyn/vehicle/identification/vehicle_identification.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
@@ -31,7 +32,8 @@ namespace veridyn::vehicle {
 ///     [data]       see read_drive_log          [signals]   see DriveSignalOptions
 ///     [segments]   see DriveSegmentOptions     [identify]  see VehicleIdentifyOptions
 ///     [track]      see DriveTrackOptions       [validate]  `segments = "all"` (default) or "holdout": where an
-///                                                          estimate of other data is validated
+///                                                          estimate of other data is validated; `open_loop`...: see
+///                                                          DriveOpenLoopOptions
 struct VehicleStudy {
   std::string name;
   std::uint64_t seed = 0;
@@ -43,6 +45,7 @@ struct VehicleStudy {
   VehicleIdentifyOptions identify;
   DriveTrackOptions track;
   bool validate_on_holdout_only = false;
+  DriveOpenLoopOptions open_loop;
   std::vector<std::filesystem::path> inputs;  ///< files that were read
   std::vector<std::string> notes;
   std::map<std::string, double, std::less<>> truth;  ///< of a simulated drive, by parameter name; empty otherwise
@@ -61,9 +64,10 @@ struct VehicleAnalysis : estimation::Analysis {
   DriveSignals signals;
   DriveSegments segments;
   VehicleIdentification identification;
+  DriveOpenLoop open_loop;  ///< where the study asks for it
 };
 
-/// The full pipeline: signals, segments, equation error, output error, hold-out, verdict.
+/// The full pipeline: signals, segments, equation error, output error, hold-out, open loop where asked for, verdict.
 /// @throws InputError when a channel that it needs is missing, or the vehicle never drives.
 [[nodiscard]] VehicleAnalysis identify(const VehicleStudy& study, Progress& progress);
 

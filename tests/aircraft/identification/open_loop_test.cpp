@@ -32,8 +32,8 @@ OpenLoop fly(const PreparedFlight& flight, const Subject& subject, const OpenLoo
   return fly_open_loop(std::span(&flight, 1), use, subject, kAll, estimate, options, quiet);
 }
 
-const OpenLoopState& state_of(const OpenLoop& flown, std::string_view name) {
-  return *std::ranges::find(flown.states, name, &OpenLoopState::name);
+const estimation::OpenLoopState& state_of(const OpenLoop& flown, std::string_view name) {
+  return *std::ranges::find(flown.states, name, &estimation::OpenLoopState::name);
 }
 
 const Evidence& row_of(const std::vector<Evidence>& rows, std::string_view name, std::string_view about) {
@@ -42,7 +42,7 @@ const Evidence& row_of(const std::vector<Evidence>& rows, std::string_view name,
 
 double pooled_inside(const OpenLoop& flown) {
   double inside = 0.0, count = 0.0;
-  for (const OpenLoopState& state : flown.states) {
+  for (const estimation::OpenLoopState& state : flown.states) {
     inside += state.inside * static_cast<double>(state.fit.count);
     count += static_cast<double>(state.fit.count);
   }
@@ -52,7 +52,7 @@ double pooled_inside(const OpenLoop& flown) {
 /// The exported model flown by an independent reading of its JSBSim file: its loads, from the file alone, move a rigid
 /// body with inertial velocity and a quaternion, at steps of 1 ms under the recorded inputs.
 std::vector<Eigen::Matrix<double, 8, 1>> flown_by_file(const std::string& xml, const FlightSignals& s,
-                                                       const OpenLoopWindow& window, double full_thrust) {
+                                                       const estimation::OpenLoopWindow& window, double full_thrust) {
   JsbsimAircraft file(xml);
   const MassProperties body = file.mass();
   std::array<double, 8> start{};
@@ -97,11 +97,11 @@ TEST(OpenLoop, FliesAndScoresAsTheExportedJsbsimFileDoes) {
   ASSERT_EQ(open.states.size(), 8u);
   const std::string xml = write_jsbsim(model);
   constexpr std::array kStates{"airspeed", "alpha", "beta", "p", "q", "r", "roll", "pitch"};
-  for (const OpenLoopWindow& window : open.windows) {
+  for (const estimation::OpenLoopWindow& window : open.windows) {
     const auto theirs = flown_by_file(xml, flight.signals, window, 60.0);
     for (std::size_t i = 0; i < kStates.size(); ++i) {
-      const OpenLoopState& ours = state_of(open, kStates[i]);
-      if (ours.axis != window.axis) continue;
+      const estimation::OpenLoopState& ours = state_of(open, kStates[i]);
+      if (ours.group != window.group) continue;
       ASSERT_EQ(ours.predicted.size(), theirs.size() + 1) << "and the gap behind the window";
       double largest = 0.0;
       for (const auto& y : theirs) largest = std::max(largest, std::abs(y(signed_index(i))));
@@ -131,7 +131,7 @@ TEST(OpenLoop, OfTheTrueModelHasTheMeasurementsInItsBands) {
   const OpenLoop open = fly(flight, truth, {.duration_s = 10.0, .gusts = false});
   EXPECT_EQ(open.windows.size(), 8u);
   EXPECT_NEAR(pooled_inside(open), 0.95, 0.02);
-  for (const OpenLoopState& state : open.states) {
+  for (const estimation::OpenLoopState& state : open.states) {
     EXPECT_GT(state.inside, 0.85) << state.name;
     EXPECT_EQ(state.held, state.windows) << state.name;
     EXPECT_NEAR(state.horizon_s, 8.0, 0.03) << state.name;
@@ -207,8 +207,8 @@ TEST(OpenLoop, FindsTheConstantThatAnotherTrimIs) {
   elsewhere.model.at(Coefficient::kCm).values[0] -= 0.01;
   const OpenLoop found = fly(flight, elsewhere, {.duration_s = 10.0, .gusts = false});
   const OpenLoop drifts = fly(flight, elsewhere, {.duration_s = 10.0, .offsets = {}, .gusts = false});
-  ASSERT_THAT(found.offsets, ElementsAre(Coefficient::kCl, Coefficient::kCm, Coefficient::kCn));
-  for (const OpenLoopWindow& window : found.windows) {
+  ASSERT_THAT(found.offsets, ElementsAre("Cl", "Cm", "Cn"));
+  for (const estimation::OpenLoopWindow& window : found.windows) {
     ASSERT_EQ(window.start.size(), 8u + 3u);
     // Sensor noise of two seconds leaves 2e-5 of Cl and 2e-4 of Cm.
     EXPECT_NEAR(window.start[8].value, 0.002, 2e-4);
@@ -236,7 +236,7 @@ TEST(OpenLoop, LooksAtNothingThatIdentificationOfItsAxisHasUsed) {
   EXPECT_NEAR(open.windows[0].span.begin, 10.0, 0.02);
   EXPECT_NEAR(open.windows[0].span.end, 16.5, 0.05);
   EXPECT_NEAR(open.windows[0].forecast_from, 12.0, 0.02);
-  for (const OpenLoopState& state : open.states) EXPECT_EQ(state.axis, Axis::kLongitudinal) << state.name;
+  for (const estimation::OpenLoopState& state : open.states) EXPECT_EQ(state.group, "longitudinal") << state.name;
   // An estimate from elsewhere has seen nothing of the flight.
   const OpenLoop all = fly(flight, truth, {.duration_s = 60.0, .gusts = false}, {}, RowUse::kExcited);
   ASSERT_EQ(all.windows.size(), 2u);
@@ -253,11 +253,11 @@ TEST(OpenLoop, OfSeveralFlightsScoresThemTogetherAndEachByItself) {
   Progress quiet;
   const OpenLoop open =
       fly_open_loop(flights, RowUse::kHoldout, truth, kAll, {}, {.duration_s = 10.0, .gusts = false}, quiet);
-  ASSERT_EQ(open.by_flight.size(), 2u);
-  EXPECT_EQ(open.by_flight[1].flight, "noisy.csv");
-  const auto& noisy = open.by_flight[1].states;
+  ASSERT_EQ(open.by_recording.size(), 2u);
+  EXPECT_EQ(open.by_recording[1].recording, "noisy.csv");
+  const auto& noisy = open.by_recording[1].states;
   for (std::size_t i = 0; i < open.states.size(); ++i) {
-    const OpenLoopState &all = open.states[i], &first = open.by_flight[0].states[i];
+    const estimation::OpenLoopState &all = open.states[i], &first = open.by_recording[0].states[i];
     EXPECT_EQ(all.fit.count, first.fit.count + noisy[i].fit.count);
     // Squares add up; the noise of the second is five times that of the first.
     const double n1 = static_cast<double>(first.fit.count), n2 = static_cast<double>(noisy[i].fit.count);
@@ -293,7 +293,7 @@ TEST(OpenLoop, TakesAsMeasuredWhatNoCoefficientMoves) {
   const OpenLoop open = with({Coefficient::kCL, Coefficient::kCm});
   ASSERT_EQ(open.states.size(), 3u);
   EXPECT_THAT(open.driven, ElementsAre("airspeed", "beta", "p", "r", "roll"));
-  EXPECT_THAT(open.offsets, ElementsAre(Coefficient::kCm));
+  EXPECT_THAT(open.offsets, ElementsAre("Cm"));
   EXPECT_FALSE(open.air_known) << "neither a ground velocity nor the study says that the air was calm";
   EXPECT_THAT(with({}).text, HasSubstr("no coefficient that moves a state"));
   EXPECT_TRUE(open_loop_evidence(with({})).empty());

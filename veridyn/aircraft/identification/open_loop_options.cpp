@@ -5,17 +5,15 @@
 #include <string>
 
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/estimation/open_loop/open_loop.hpp"
 
 namespace veridyn::aircraft {
 
 OpenLoopOptions OpenLoopOptions::read(const StudyTable& table) {
   OpenLoopOptions options;
-  options.duration_s = table.positive_or("open_loop", "s", options.duration_s);
-  options.start_s = table.positive_or("open_loop_start", "s", options.start_s);
-  if (options.asked() && !(options.duration_s > options.start_s))
-    table.fail("open_loop", fmt::format("= {} s must be longer than open_loop_start = {} s, from which the initial "
-                                        "state is estimated",
-                                        options.duration_s, options.start_s));
+  const estimation::OpenLoopTimes times = estimation::OpenLoopTimes::read(table);
+  options.duration_s = times.duration_s;
+  options.start_s = times.start_s;
   if (table.has("open_loop_offsets")) {
     options.offsets.clear();
     const std::vector<std::string> names(kCoefficientNames.begin(), kCoefficientNames.end());

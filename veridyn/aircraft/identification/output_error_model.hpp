@@ -13,7 +13,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/enum_array.hpp"
 #include "veridyn/core/index.hpp"
-#include "veridyn/estimation/output_error/parametric_model.hpp"
+#include "veridyn/estimation/open_loop/open_loop_model.hpp"
 
 namespace veridyn::aircraft {
 
@@ -35,7 +35,7 @@ namespace veridyn::aircraft {
 ///
 /// For simulations that nothing corrects (see open_loop.hpp) parameters can be fixed, constants added to coefficients,
 /// and the integration made as fine as desired (`Simulation`).
-class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel> {
+class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel, 8, estimation::OpenLoopModel> {
  public:
   /// View of the parts of a flight that are simulated.
   struct FlownSpans {
@@ -76,21 +76,22 @@ class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel> {
   [[nodiscard]] std::string segment_name(std::size_t segment) const override;
 
   /// What was measured of the outputs, per segment.
-  [[nodiscard]] std::vector<estimation::RowMatrix> measured() const;
+  [[nodiscard]] std::vector<estimation::RowMatrix> measured() const override;
   /// Where a segment lies in its flight.
-  [[nodiscard]] TimeSpan segment_span(std::size_t segment) const;
+  [[nodiscard]] TimeSpan segment_span(std::size_t segment) const override;
   /// Which of the flights a segment is of.
   [[nodiscard]] std::size_t flight_of(std::size_t segment) const { return segments_[segment].flight; }
   /// Between two samples of the outputs [s].
-  [[nodiscard]] double sample_interval_s() const { return step_; }
+  [[nodiscard]] double sample_interval_s() const override { return step_; }
   /// The states that are simulated, which are the first outputs.
-  [[nodiscard]] std::size_t simulated_states() const {
+  [[nodiscard]] std::size_t forecast_outputs() const override {
     return static_cast<std::size_t>(std::ranges::count(simulated_, true));
   }
   /// The samples of a segment before it diverges, all where it does not.
-  [[nodiscard]] Eigen::Index samples_before_divergence(std::size_t segment, const Eigen::VectorXd& theta) const;
+  [[nodiscard]] Eigen::Index samples_before_divergence(std::size_t segment,
+                                                       const Eigen::VectorXd& theta) const override;
   /// Leaves the first `samples` of a segment. @param samples  at most those that it has
-  void shorten(std::size_t segment, Eigen::Index samples);
+  void shorten(std::size_t segment, Eigen::Index samples) override;
 
   template <typename Scalar>
   bool simulate(std::size_t segment, const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& theta,
@@ -277,7 +278,7 @@ bool OutputErrorModel::simulate(std::size_t segment, const Eigen::Matrix<Scalar,
   constexpr double kLargest_rad = 80.0 * kDegree;
   constexpr double kSlowest_mps = 2.0;
   const Segment& s = segments_[segment];
-  const auto shared = signed_index(parameters_.size()), states = signed_index(simulated_states());
+  const auto shared = signed_index(parameters_.size()), states = signed_index(forecast_outputs());
   // The parameters, and behind them the constants, which stand behind the initial state.
   std::vector<Scalar> values(theta.data(), theta.data() + shared);
   values.insert(values.end(), theta.data() + shared + states, theta.data() + theta.size());

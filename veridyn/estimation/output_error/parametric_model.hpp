@@ -100,14 +100,16 @@ inline void for_each_segment(const ParametricModel& model, int threads, const st
 ///
 /// with Jets that have derivatives with respect to initial conditions only, of which only the output's derivatives are
 /// used: it need not simulate for longer than they last.
-template <typename Derived, int kStride = 8>
-class AutodiffModel : public ParametricModel {
+///
+/// `Base` is ParametricModel or an interface that extends it.
+template <typename Derived, int kStride = 8, std::derived_from<ParametricModel> Base = ParametricModel>
+class AutodiffModel : public Base {
  public:
   [[nodiscard]] bool respond(std::size_t segment, const Eigen::VectorXd& theta, std::span<const Eigen::Index> active,
                              ModelResponse& response) const override {
     const auto& model = static_cast<const Derived&>(*this);
-    const Eigen::Index N = samples(segment);
-    const auto p = signed_index(outputs().size());
+    const Eigen::Index N = model.samples(segment);
+    const auto p = signed_index(model.outputs().size());
     const auto n = signed_index(active.size());
     response.output.resize(N, p);
     response.sensitivity.resize(N * p, n);
@@ -148,7 +150,7 @@ class AutodiffModel : public ParametricModel {
 
   /// Initial conditions by themselves, if only while they last, where that leaves fewer whole passes.
   [[nodiscard]] std::vector<Pass> passes(std::span<const Eigen::Index> active) const {
-    const auto is_initial = [&](Eigen::Index unknown) { return unknown >= signed_index(parameters().size()); };
+    const auto is_initial = [&](Eigen::Index unknown) { return unknown >= signed_index(this->parameters().size()); };
     const auto whole = [](std::ptrdiff_t unknowns) { return (unknowns + kStride - 1) / kStride; };
     const std::ptrdiff_t initial = std::ranges::count_if(active, is_initial), all = std::ssize(active);
     const bool apart = has_transients() && initial < all && whole(all - initial) < whole(all);

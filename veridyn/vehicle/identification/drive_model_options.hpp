@@ -92,6 +92,11 @@ inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownUnits{
 static_assert(!kDriveUnknownNames.back().empty() && !kDriveUnknownUnits.back().empty(), "one is missing");
 /// Whether it is the vehicle's, and not of its sensors or the day.
 [[nodiscard]] constexpr bool is_of_the_vehicle(DriveUnknown u) { return u < DriveUnknown::kRollFrequency; }
+/// Whether it is an offset of a sensor, which each drive has its own of.
+[[nodiscard]] constexpr bool is_bias(DriveUnknown u) {
+  return u == DriveUnknown::kSteerBias || u == DriveUnknown::kYawRateBias || u == DriveUnknown::kAccelYBias ||
+         u == DriveUnknown::kRollBias || u == DriveUnknown::kRollRateBias;
+}
 
 /// Tyres of the drive model.
 enum class DriveTyre {
@@ -126,6 +131,9 @@ struct DriveModelOptions {
   /// C_f, C_r and I_z are looked for between their start over this and times it; no key.
   double search_factor = 1e3;
   double gravity = kGravity;
+  /// Biases to which each segment adds a constant of its own, with their priors; no key.
+  std::vector<DriveUnknown> offsets = {};
+  double finer_steps = 1.0;  ///< how many times finer the integration steps than output error needs; no key
 
   DriveModelOptions();
   /// @throws InputError naming file, line and key.

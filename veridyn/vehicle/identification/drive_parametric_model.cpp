@@ -6,9 +6,12 @@
 #include <cmath>
 #include <type_traits>
 
+#include "veridyn/core/assert.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/numerics/linear_algebra/general_eigen.hpp"
+#include "veridyn/numerics/linear_systems/lyapunov.hpp"
 #include "veridyn/numerics/modulating_kernel.hpp"
 #include "veridyn/numerics/ode.hpp"
 #include "veridyn/numerics/signal_band.hpp"
@@ -32,14 +35,12 @@ constexpr double kInitialRoll = 0.01, kInitialRollRate = 0.05, kInitialSlip = 0.
 
 /// Noise of the steering over its rms below which nothing is taken off.
 constexpr double kNoNoise = 1e-4;
-
 /// Speeds at which the whitening filter is computed.
 constexpr int kFilterSpeeds = 9;
 
 /// Derivatives with respect to initial conditions begin as one and count for nothing below this.
 constexpr double kForgotten = 1e-8;
-/// In samples.
-constexpr std::size_t kForgottenEvery = 25;
+constexpr std::size_t kForgottenEvery = 25;  // samples
 
 template <typename State>
 bool depends_on_its_beginning(const State& x) {
@@ -125,9 +126,9 @@ DriveParametricModel::Segment DriveParametricModel::make_segment(std::size_t beg
   Segment out;
   out.begin = begin;
   out.samples = static_cast<Eigen::Index>(end - begin);
-  out.substeps =
-      static_cast<int>(std::clamp(std::ceil(std::max(step / kLongestStep_s, step * rate / kStepTimesRate) - 1e-9), 1.0,
-                                  static_cast<double>(kMostSubsteps)));
+  out.substeps = static_cast<int>(
+      std::clamp(std::ceil(options_.finer_steps * std::max(step / kLongestStep_s, step * rate / kStepTimesRate) - 1e-9),
+                 1.0, options_.finer_steps * kMostSubsteps));
   // Steady cornering at the measured yaw rate, averaged over a tenth of a second.
   const std::size_t few = std::min(end - begin, static_cast<std::size_t>(std::max(1.0, 0.1 / step)));
   double r0 = 0.0;
@@ -146,12 +147,29 @@ DriveParametricModel::Segment DriveParametricModel::make_segment(std::size_t beg
   }
   if (options_.effects[DriveEffect::kBank])
     out.initial.push_back({.name = std::string(kSegmentBank), .unit = "rad", .prior_sigma = kBankSigma});
+  for (const DriveUnknown bias : options_.offsets)
+    out.initial.push_back({.name = std::string(kDriveUnknownNames[bias]),
+                           .unit = std::string(kDriveUnknownUnits[bias]),
+                           .prior_sigma = options_.prior[bias]});
   return out;
 }
 
 TimeSpan DriveParametricModel::segment_span(std::size_t segment) const {
   const Segment& s = segments_[segment];
   return {grid_.at(s.begin), grid_.at(s.begin + static_cast<std::size_t>(s.samples) - 1)};
+}
+
+Eigen::Index DriveParametricModel::samples_before_divergence(std::size_t segment, const Eigen::VectorXd& theta) const {
+  estimation::RowMatrix output = estimation::RowMatrix::Constant(samples(segment), signed_index(outputs_.size()), kNaN);
+  (void)simulate(segment, theta, output);
+  Eigen::Index driven = 0;
+  while (driven < output.rows() && output.row(driven).allFinite()) ++driven;
+  return driven;
+}
+
+void DriveParametricModel::shorten(std::size_t segment, Eigen::Index samples) {
+  VERIDYN_ASSERT(samples >= 1 && samples <= segments_[segment].samples);
+  segments_[segment].samples = samples;
 }
 
 std::string DriveParametricModel::segment_name(std::size_t segment) const {
@@ -277,7 +295,8 @@ bool DriveParametricModel::drive(const Segment& segment, const RollingBicycle<Sc
   };
   const auto first = signed_index(parameters_.size());
   const bool banked = options_.effects[DriveEffect::kBank];
-  const Scalar bank = banked ? theta(first + signed_index(segment.initial.size()) - 1) : Scalar(0.0);
+  const Scalar bank =
+      banked ? theta(first + signed_index(segment.initial.size() - options_.offsets.size()) - 1) : Scalar(0.0);
   const bool by_pedals = !speed_rate_.empty();
   const SampledInput speed_rate{
       by_pedals ? std::span<const double>(speed_rate_).subspan(segment.begin, n) : std::span<const double>(), step};
@@ -400,8 +419,12 @@ auto DriveParametricModel::with_model(const Parameters<Scalar>& theta, const Wor
 }
 
 template <typename Scalar>
-bool DriveParametricModel::simulate(const Segment& segment, const Parameters<Scalar>& theta, Extent extent,
+bool DriveParametricModel::simulate(const Segment& segment, const Parameters<Scalar>& given, Extent extent,
                                     Outputs<Scalar>& output) const {
+  Parameters<Scalar> theta = given;
+  const std::vector<DriveUnknown>& offsets = options_.offsets;
+  for (std::size_t i = 0; i < offsets.size(); ++i)
+    theta(static_cast<Eigen::Index>(offsets[i])) += given(given.size() - signed_index(offsets.size() - i));
   return with_model(theta, [&](const auto& model, auto states) {
     const bool drives = drive<decltype(states)::value>(segment, model, theta, extent, output);
     if (drives && !whitening_.empty()) whiten(segment, output);
@@ -481,6 +504,16 @@ DriveWhitening DriveParametricModel::whitening(const Eigen::VectorXd& theta) con
     out.filter.push_back(whitening_filter(noise_at(out.speed.back(), theta)));
   }
   return out;
+}
+
+Eigen::VectorXd DriveParametricModel::steering_noise_sigmas(const Eigen::VectorXd& theta) const {
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(signed_index(compared_.size()));
+  if (!(steer_sigma_ > 0.0) || !(steer_error_share_ > 0.0) || segments_.empty()) return none;
+  const SpeedRange range = speeds();
+  const DriveNoise noise = noise_at(0.5 * (range.slowest + range.fastest), theta);
+  if (!(numerics::general_eigenvalues(noise.F).cwiseAbs().maxCoeff() < 1.0)) return none;
+  const Eigen::MatrixXd P = numerics::discrete_lyapunov(noise.F, noise.G * noise.G.transpose()).X;
+  return (noise.C * P * noise.C.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
 }
 
 bool DriveParametricModel::moves_loads() const {

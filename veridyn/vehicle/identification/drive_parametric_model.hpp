@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "veridyn/estimation/output_error/parametric_model.hpp"
+#include "veridyn/estimation/open_loop/open_loop_model.hpp"
 #include "veridyn/vehicle/identification/drive_model_options.hpp"
 #include "veridyn/vehicle/identification/drive_signals.hpp"
 #include "veridyn/vehicle/identification/drive_whitening.hpp"
@@ -27,6 +27,9 @@ inline constexpr double kPedalBand_Hz = 2.0;
 /// roll, roll rate and lagging slips what they differ by from steady cornering. (Were they taken as steady, a transient
 /// of half a second a segment would move stiffnesses by 4 to 10 %.)
 ///
+/// Each segment may have constants of its own in addition to biases of steering and sensors, further unknowns of it
+/// (`DriveModelOptions::offsets`): for simulations that nothing corrects, see drive_open_loop.hpp.
+///
 /// Effects of a racing car are added where the options have them: a bank of the road is one more unknown of each
 /// segment, axle loads move with the speed and with its derivative (the recorded speed's below kPedalBand_Hz).
 ///
@@ -45,7 +48,7 @@ inline constexpr double kPedalBand_Hz = 2.0;
 ///
 /// What the model leaves out shows as autocorrelation of the residual: load transfer, compliance of the steering
 /// (`steer_scale`, indistinguishable from C_f). Diverged: |v| above 2 u, |r| above 50 rad/s.
-class DriveParametricModel : public estimation::AutodiffModel<DriveParametricModel> {
+class DriveParametricModel : public estimation::AutodiffModel<DriveParametricModel, 8, estimation::OpenLoopModel> {
  public:
   /// All DriveUnknowns, then the initial conditions of the segment.
   template <typename Scalar>
@@ -67,18 +70,26 @@ class DriveParametricModel : public estimation::AutodiffModel<DriveParametricMod
   }
   [[nodiscard]] std::string segment_name(std::size_t segment) const override;
   /// From its first to its last sample [s].
-  [[nodiscard]] TimeSpan segment_span(std::size_t segment) const;
+  [[nodiscard]] TimeSpan segment_span(std::size_t segment) const override;
+  [[nodiscard]] std::size_t forecast_outputs() const override { return outputs_.size(); }
+  [[nodiscard]] double sample_interval_s() const override { return grid_.step; }
+  [[nodiscard]] Eigen::Index samples_before_divergence(std::size_t segment,
+                                                       const Eigen::VectorXd& theta) const override;
+  void shorten(std::size_t segment, Eigen::Index samples) override;
   [[nodiscard]] double smoothing_Hz() const { return smoothing_Hz_; }  ///< as applied; 0: none
   /// Where it begins on the signals' grid.
   [[nodiscard]] std::size_t first_sample(std::size_t segment) const { return segments_[segment].begin; }
 
   /// What was measured of the outputs, per segment, smoothed; NaN where missing.
-  [[nodiscard]] std::vector<estimation::RowMatrix> measured() const;
+  [[nodiscard]] std::vector<estimation::RowMatrix> measured() const override;
 
   /// The filter that whitens the residual at `theta`, over the speeds of the segments: white noise of the steering as
   /// it is of the signals, which acts on the outputs of its sample too, and white noise of the outputs. Empty where
   /// outputs are delayed, smoothed, or the steering has no noise.
   [[nodiscard]] DriveWhitening whitening(const Eigen::VectorXd& theta) const;
+  /// Standard deviations that what is left of the steering's noise gives the outputs at `theta`, at the mean speed of
+  /// the segments; 0 without noise, or where the vehicle is unstable there.
+  [[nodiscard]] Eigen::VectorXd steering_noise_sigmas(const Eigen::VectorXd& theta) const;
   /// The model whose outputs, and what is compared with them, go through a filter.
   [[nodiscard]] DriveParametricModel weighed(DriveWhitening whitening) const;
 

@@ -190,6 +190,24 @@ std::vector<estimation::PredictedQuantity> quantities_of(std::span<const Predict
   return quantities;
 }
 
+/// How well roll and roll rate are predicted, where the model has them among its outputs.
+std::vector<estimation::PredictedQuantity> roll_quantities_of(const DriveParametricModel& model,
+                                                              const estimation::OutputErrorEstimate& predicted) {
+  std::vector<estimation::PredictedQuantity> quantities;
+  const std::vector<estimation::RowMatrix> measured = model.measured();
+  for (std::size_t j = 0; j < model.outputs().size(); ++j) {
+    const auto& [name, unit] = model.outputs()[j];
+    if (name != kDriveSignalNames[DriveSignal::kRoll] && name != kDriveSignalNames[DriveSignal::kRollRate]) continue;
+    Pairs pairs;
+    for (std::size_t s = 0; s < model.segments(); ++s) {
+      const Eigen::VectorXd seen = measured[s].col(signed_index(j)), said = predicted.predicted[s].col(signed_index(j));
+      pairs.add({seen.begin(), seen.end()}, {said.begin(), said.end()}, static_cast<int>(s));
+    }
+    if (!pairs.measured.empty()) quantities.push_back(predicted_quantity(name.c_str(), unit.c_str(), pairs));
+  }
+  return quantities;
+}
+
 /// theta with the states at a segment's beginning behind it.
 Eigen::VectorXd with_initial_state(const Eigen::VectorXd& theta, const estimation::OutputErrorEstimate& fitted,
                                    std::size_t segment) {
@@ -244,6 +262,7 @@ DriveValidation predict_drive(const DriveSignals& signals, std::span<const TimeS
     out.stretches.push_back(std::move(drive));
   }
   out.quantities = quantities_of(out.stretches);
+  out.roll_quantities = roll_quantities_of(model, initial);
   const estimation::PredictedQuantity* r = out.find("yaw_rate");
   out.text = r == nullptr ? "nothing to compare"
                           : fmt::format("predicts {:.1f} % of the yaw rate's variance over {} segments",

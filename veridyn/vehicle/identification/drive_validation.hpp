@@ -32,6 +32,8 @@ struct PredictedStretch {
 struct DriveValidation {
   /// "yaw_rate", "accel_y", "lateral_velocity", "yaw", "path", each over all spans.
   std::vector<estimation::PredictedQuantity> quantities;
+  /// "roll" and "roll_rate" of a body that rolls, where they are recorded.
+  std::vector<estimation::PredictedQuantity> roll_quantities;
   std::vector<PredictedStretch> stretches;
   std::string text;  ///< one sentence
   /// Null where the quantity was not compared.

@@ -216,10 +216,12 @@ estimation::Estimate make_vehicle_estimate(const VehicleIdentification& identifi
   if (identification.output_error)
     for (const estimation::SegmentParameter& p : identification.output_error->segment_parameters)
       if (p.name == kSegmentBank) out.fit[fmt::format("{}.segment_{}", kSegmentBank, p.segment + 1)] = p.value;
-  for (const estimation::PredictedQuantity& q : identification.fit.quantities) {
-    out.fit[q.name + ".r2"] = q.fit.r2;
-    out.fit[q.name + ".rmse"] = q.fit.rmse;
-    if (std::isfinite(q.lag1)) out.fit[q.name + ".lag1"] = q.lag1;
+  for (const auto* quantities : {&identification.fit.quantities, &identification.fit.roll_quantities}) {
+    for (const estimation::PredictedQuantity& q : *quantities) {
+      out.fit[q.name + ".r2"] = q.fit.r2;
+      out.fit[q.name + ".rmse"] = q.fit.rmse;
+      if (std::isfinite(q.lag1)) out.fit[q.name + ".lag1"] = q.lag1;
+    }
   }
   for (const estimation::PredictedQuantity& q : identification.validation.quantities)
     out.validation[q.name] = {q.fit.mae, q.fit.rmse, q.fit.r2, q.fit.theil, q.unit};

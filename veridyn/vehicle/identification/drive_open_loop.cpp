@@ -1,0 +1,188 @@
+#include "veridyn/vehicle/identification/drive_open_loop.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "veridyn/core/constants.hpp"
+#include "veridyn/core/index.hpp"
+#include "veridyn/estimation/open_loop/open_loop_evidence.hpp"
+#include "veridyn/estimation/open_loop/open_loop_forecast.hpp"
+#include "veridyn/estimation/open_loop/open_loop_scores.hpp"
+#include "veridyn/estimation/open_loop/open_loop_windows.hpp"
+#include "veridyn/vehicle/identification/drive_parametric_model.hpp"
+#include "veridyn/vehicle/identification/estimated_drive_model.hpp"
+#include "veridyn/vehicle/model/bicycle_analysis.hpp"
+
+namespace veridyn::vehicle {
+namespace {
+
+using estimation::OpenLoopError;
+using estimation::OpenLoopForecast;
+
+/// How many times finer the integration steps than output error needs, whose Runge-Kutta steps are right to 3e-4 of a
+/// step's decay: their errors fall with the fourth power.
+constexpr double kFinerSteps = 5.0;
+/// Where a signal has no error, rounding is one.
+constexpr double kRounding = 1e-8;
+
+/// Where windows may begin, and what they may be driven over.
+struct Spans {
+  std::vector<TimeSpan> excited, free;
+};
+
+Spans spans_of(const DriveSegments& segments, OpenLoopUse use) {
+  Spans spans{.excited = segments.holdout, .free = segments.usable};
+  if (use == OpenLoopUse::kHoldout) spans.free = estimation::unseen(segments.usable, segments.identification);
+  if (use == OpenLoopUse::kOtherDrive) {
+    spans.excited.insert(spans.excited.end(), segments.identification.begin(), segments.identification.end());
+    std::ranges::sort(spans.excited, {}, &TimeSpan::begin);
+  }
+  return spans;
+}
+
+/// The model with every parameter fixed, and the biases that each window has of its own.
+EstimatedDriveModel fixed_model(const DriveOpenLoopProblem& problem, const DriveOpenLoopOptions& options) {
+  EstimatedDriveModel out = estimated_drive_model(problem.estimate, problem.vehicle, problem.model);
+  DriveModelOptions& model = out.options;
+  model.free.fill(false);
+  model.finer_steps = kFinerSteps;
+  for (const DriveUnknown u : {DriveUnknown::kCf, DriveUnknown::kCr, DriveUnknown::kIz, DriveUnknown::kA})
+    model.start[u] = kNaN;
+  model.offsets = options.offsets.value_or(std::vector<DriveUnknown>());
+  for (const DriveUnknown bias : kDriveBiases) {
+    const bool of_roll = bias == DriveUnknown::kRollBias || bias == DriveUnknown::kRollRateBias;
+    const DriveSignal signal = bias == DriveUnknown::kRollBias ? DriveSignal::kRoll : DriveSignal::kRollRate;
+    const bool acts = !of_roll || (has_roll(model.structure) && problem.signals[signal].available());
+    const estimation::Parameter* known = problem.estimate.find(std::string(kDriveUnknownNames[bias]));
+    if (acts && problem.use == OpenLoopUse::kHoldout && known != nullptr && std::isfinite(known->value)) {
+      model.start[bias] = known->value;
+      continue;
+    }
+    // That of another day says nothing.
+    const auto place = static_cast<Eigen::Index>(bias);
+    out.covariance.row(place).setZero();
+    out.covariance.col(place).setZero();
+    model.start[bias] = 0.0;
+    if (!options.offsets && acts) model.offsets.push_back(bias);
+  }
+  return out;
+}
+
+/// The errors of what is compared: the sensor's, and what lasts: what noise of the steering gives it, or what the
+/// residual had beyond the sensor where the model was identified.
+std::vector<OpenLoopError> errors_of(const DriveParametricModel& model, const DriveSignals& signals,
+                                     const estimation::Estimate& estimate) {
+  Eigen::VectorXd theta(signed_index(model.parameters().size()));
+  for (Eigen::Index i = 0; i < theta.size(); ++i) theta(i) = model.parameters()[at(i)].start;
+  const Eigen::VectorXd by_steering = model.steering_noise_sigmas(theta);
+  std::vector<OpenLoopError> errors;
+  for (const estimation::ModelOutput& output : model.outputs()) {
+    const auto signal =
+        static_cast<DriveSignal>(std::ranges::find(kDriveSignalNames, output.name) - kDriveSignalNames.begin());
+    OpenLoopError error{.white = std::max(kRounding, signals[signal].sigma),
+                        .lasting = by_steering(signed_index(errors.size()))};
+    const auto residual = estimate.fit.find(output.name + ".rmse");
+    if (residual != estimate.fit.end() && residual->second > error.white)
+      error.lasting =
+          std::max(error.lasting, std::sqrt(residual->second * residual->second - error.white * error.white));
+    errors.push_back(error);
+  }
+  return errors;
+}
+
+/// Of the undamped yaw oscillation at the mean speed of what was driven.
+std::optional<double> yaw_period(const VehicleParameters<double>& p, const DriveSignals& signals,
+                                 std::span<const OpenLoopForecast> driven) {
+  double sum = 0.0, count = 0.0;
+  for (const OpenLoopForecast& f : driven) {
+    const auto [begin, end] = signals.indices(f.window.span);
+    for (std::size_t k = begin; k < end; ++k) {
+      sum += signals[DriveSignal::kSpeed].value[k];
+      count += 1.0;
+    }
+  }
+  if (!(count > 0.0)) return std::nullopt;
+  const LinearBicycle<double> bicycle{p.mass, p.I_z, p.a, p.b, p.C_f, p.C_r, sum / count};
+  const double squared = std::abs(bicycle.A().determinant());
+  if (!(squared > 0.0)) return std::nullopt;
+  return 2.0 * M_PI / std::sqrt(squared);
+}
+
+std::string text_of(const DriveOpenLoop& o, OpenLoopUse use, const EstimatedDriveModel& model) {
+  if (!model.missing.empty())
+    return fmt::format("nothing was driven open loop: the estimate has no {}", fmt::join(model.missing, ", "));
+  if (!o.available())
+    return fmt::format("nothing was driven open loop: no unseen stretch lasts {:g} s with all signals",
+                       o.times.start_s + estimation::kLeastForecast_s);
+  const std::size_t diverged = estimation::diverged_windows(o);
+  return fmt::format(
+      "{} windows of {:.0f} s at most ({:.0f} s forecast in all) integrated from {} alone on {}; the first {:g} s of "
+      "each give its initial state{}{}",
+      o.windows.size(), o.times.duration_s, o.forecast_s, o.inputs,
+      use == OpenLoopUse::kHoldout ? "data that identification did not see" : "another drive than identification's",
+      o.times.start_s, o.offsets.empty() ? "" : fmt::format(" and its own {}", fmt::join(o.offsets, ", ")),
+      diverged > 0 ? fmt::format("; {} diverged and were cut", diverged) : "");
+}
+
+}  // namespace
+
+DriveOpenLoop drive_open_loop(const DriveOpenLoopProblem& problem, const DriveOpenLoopOptions& options,
+                              Progress& progress) {
+  DriveOpenLoop out;
+  out.times = options.times;
+  out.inputs = "steering and speed";
+  if (!options.asked()) return out;
+  const EstimatedDriveModel given = fixed_model(problem, options);
+  if (given.missing.empty()) {
+    for (const DriveUnknown bias : given.options.offsets) out.offsets.emplace_back(kDriveUnknownNames[bias]);
+    const Spans spans = spans_of(problem.segments, problem.use);
+    const std::vector<TimeSpan> windows = estimation::open_loop_windows(spans.excited, spans.free, options.times);
+    DriveParametricModel model(problem.signals, windows, given.vehicle, given.options);
+    DriveParametricModel first = model;
+    const std::vector<OpenLoopError> errors = errors_of(model, problem.signals, problem.estimate);
+    const std::vector<OpenLoopForecast> driven =
+        estimation::open_loop_forecasts(model, first,
+                                        {.covariance = given.covariance,
+                                         .errors = errors,
+                                         .judged = std::vector<bool>(errors.size(), true),
+                                         .start_s = options.times.start_s,
+                                         .drifting = {std::string(kSegmentBank)}},
+                                        progress);
+    estimation::add_windows(driven, out);
+    const std::array<std::string, 1> one_group{};
+    out.states = estimation::open_loop_scores(model.outputs(), driven, one_group,
+                                              [](std::string_view) { return std::string(); });
+    out.yaw_period_s = yaw_period(given.vehicle, problem.signals, driven);
+  }
+  out.text = text_of(out, problem.use, given);
+  return out;
+}
+
+std::vector<estimation::Evidence> open_loop_evidence(const DriveOpenLoop& driven) {
+  std::vector<estimation::Evidence> rows;
+  if (driven.yaw_period_s) {
+    std::optional<estimation::Evidence> row = estimation::open_loop_horizon(
+        driven,
+        {.period_s = *driven.yaw_period_s,
+         .motion = "yaw oscillation",
+         .scale = "periods of the yaw oscillation",
+         .advice_large =
+             "see in the report where it leaves: driven harder or at other speeds than where it was identified, "
+             "something is missing (identify.structure), or a recorded angle or speed is wrong",
+         .advice_small =
+             "trust its forecasts as far as the error found, not its bands: these know parameters, sensors and the "
+             "residual where it was identified, not another road or wind"});
+    if (row) rows.push_back(std::move(*row));
+  }
+  for (estimation::Evidence& row :
+       estimation::open_loop_errors(driven, "sideways faster than twice forward, 50 rad/s of yaw"))
+    rows.push_back(std::move(row));
+  return rows;
+}
+
+}  // namespace veridyn::vehicle
