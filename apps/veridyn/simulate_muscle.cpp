@@ -13,6 +13,7 @@
 #include "veridyn/core/index.hpp"
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/muscle/muscle_run.hpp"
+#include "veridyn/muscle/osim/external_loads_file.hpp"
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/report/muscle_report.hpp"
 
@@ -28,6 +29,11 @@ void write_results(OutputFolder& folder, const MuscleStudy& study, const MuscleR
   folder.write("states.sto", [&](const Path& path) { io::write_storage(state_storage(study, result), path); });
   if (const auto controls = control_storage(study, result))
     folder.write("controls.sto", [&](const Path& path) { io::write_storage(*controls, path); });
+  if (result.reactions) folder.write("reactions.csv", io::to_csv(reaction_table(study, result)));
+  if (const auto contacts = contact_record(study, result)) {
+    folder.write("contact_forces.sto", [&](const Path& path) { io::write_storage(contacts->storage, path); });
+    folder.write("contact_loads.xml", to_external_loads_text(contacts->sources, "contact_forces.sto"));
+  }
   folder.write("model.osim", [&](const Path& path) { study.file->write(study.written, path); });
   folder.write("report.html", report::to_html(report::muscle_report(study, result, program_name())));
 }

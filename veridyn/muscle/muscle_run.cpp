@@ -14,6 +14,29 @@
 namespace veridyn::muscle {
 namespace {
 
+/// What joints transmit in the result's motion, with accelerations where it has them.
+std::optional<JointReactions> reactions_of(const MuscleStudy& study, const MuscleTrajectory& t,
+                                           const estimation::RowMatrix& qddot) {
+  if (!study.reactions) return std::nullopt;
+  const MovedModel moved{.time = t.time,
+                         .q = t.q,
+                         .qdot = t.qdot,
+                         .qddot = qddot,
+                         .tendon_force = t.tendon_force,
+                         .reserve = t.reserve,
+                         .external = study.motion.external.get(),
+                         .passive = study.method != MuscleMethod::kInverseDynamics};
+  return joint_reactions(*study.system, moved, *study.reactions);
+}
+
+/// Looks at the external loads of an analysed motion.
+void check_loads(const MuscleStudy& study, const MotionAnalysis& analysis, MuscleResult& result) {
+  if (!study.motion.external || analysis.interrupted) return;
+  result.external_fit = external_load_fit(*study.system, analysis);
+  for (std::string& warning : external_load_warnings(*study.system, *study.motion.external, analysis))
+    result.warnings.push_back(std::move(warning));
+}
+
 MuscleResult forward(const MuscleStudy& study, Progress& progress) {
   progress.stage(fmt::format("simulating {:g} s of {}", study.end - study.begin, study.title));
   const ForwardOptions options{
@@ -21,12 +44,14 @@ MuscleResult forward(const MuscleStudy& study, Progress& progress) {
   MuscleResult result;
   result.trajectory = simulate_forward(*study.system, study.start, study.controls, options, progress);
   result.controls = study.controls;
+  result.reactions = reactions_of(study, result.trajectory, {});
   return result;
 }
 
 /// The rows of a prescribed motion as a result.
-MuscleResult result_of(MotionAnalysis&& analysis) {
+MuscleResult result_of(const MuscleStudy& study, MotionAnalysis&& analysis) {
   MuscleResult result;
+  check_loads(study, analysis, result);
   MuscleTrajectory& t = result.trajectory;
   t.time = std::move(analysis.time);
   t.q = std::move(analysis.q);
@@ -41,8 +66,12 @@ MuscleResult result_of(MotionAnalysis&& analysis) {
 
 MuscleResult inverse(const MuscleStudy& study, Progress& progress) {
   progress.stage("inverse dynamics");
-  return result_of(
-      analyse_motion(*study.system, study.motion, study.start.q, frame_times(study.begin, study.end, study.rate_Hz)));
+  MotionAnalysis analysis =
+      analyse_motion(*study.system, study.motion, study.start.q, frame_times(study.begin, study.end, study.rate_Hz));
+  const estimation::RowMatrix qddot = std::move(analysis.qddot);
+  MuscleResult result = result_of(study, std::move(analysis));
+  result.reactions = reactions_of(study, result.trajectory, qddot);
+  return result;
 }
 
 MuscleResult optimise(const MuscleStudy& study, Progress& progress) {
@@ -52,8 +81,9 @@ MuscleResult optimise(const MuscleStudy& study, Progress& progress) {
                       study.static_optimization, progress);
   estimation::RowMatrix activation = std::move(analysis.activation), force = std::move(analysis.force),
                         reserve = std::move(analysis.reserve);
+  const estimation::RowMatrix qddot = std::move(analysis.qddot);
   const std::vector<std::size_t> infeasible = std::move(analysis.infeasible);
-  MuscleResult result = result_of(std::move(analysis));
+  MuscleResult result = result_of(study, std::move(analysis));
   MuscleTrajectory& t = result.trajectory;
   t.activation = std::move(activation);
   t.tendon_force = std::move(force);
@@ -74,6 +104,7 @@ MuscleResult optimise(const MuscleStudy& study, Progress& progress) {
                     "motion needs; what comes closest is given",
                     infeasible.size(), t.time.size(), result.overloaded.front()));
   }
+  result.reactions = reactions_of(study, t, qddot);
   return result;
 }
 
@@ -81,6 +112,11 @@ MuscleResult follow(const MuscleStudy& study, Progress& progress) {
   progress.stage(fmt::format("computed muscle control of {:g} s", study.end - study.begin));
   ControlResult found = computed_muscle_control(*study.system, study.motion, study.control, progress);
   MuscleResult result;
+  if (study.motion.external)
+    check_loads(
+        study,
+        analyse_motion(*study.system, study.motion, study.start.q, frame_times(study.begin, study.end, study.rate_Hz)),
+        result);
   result.trajectory = std::move(found.trajectory);
   result.desired = std::move(found.desired);
   result.controls = std::move(found.controls);
@@ -91,6 +127,7 @@ MuscleResult follow(const MuscleStudy& study, Progress& progress) {
         "the reserves did more than their force",
         result.overloaded.size(), result.overloaded.front()));
   }
+  result.reactions = reactions_of(study, result.trajectory, {});
   return result;
 }
 

@@ -8,6 +8,9 @@
 #include "veridyn/core/recording.hpp"
 #include "veridyn/io/opensim/storage.hpp"
 #include "veridyn/muscle/muscle_study.hpp"
+#include "veridyn/muscle/simulation/contact_record.hpp"
+#include "veridyn/muscle/simulation/external_load_check.hpp"
+#include "veridyn/muscle/simulation/joint_reactions.hpp"
 
 namespace veridyn::muscle {
 
@@ -17,11 +20,14 @@ struct MuscleResult {
   /// without excitations. Of a simulation that did not finish, the rows up to there.
   MuscleTrajectory trajectory;
   estimation::RowMatrix desired;  ///< the desired pose, rows as `trajectory`; empty of a forward simulation
-  /// What the desired motion needs at each coordinate, of gravity and inertia [N m or N]; inverse dynamics and static
-  /// optimization.
+  /// What the desired motion needs at each coordinate, of gravity and inertia less the external loads [N m or N];
+  /// inverse dynamics and static optimization.
   estimation::RowMatrix generalized_force;
   /// Excitations and reserves that, from the first row's state on, repeat the motion.
   std::optional<MuscleControls> controls;
+  /// What joints transmit, as the study asks for it.
+  std::optional<JointReactions> reactions;
+  std::optional<ExternalLoadFit> external_fit;  ///< of a motion with external loads
   std::vector<double> overloaded;  ///< instants at which the muscles could not produce the desired motion [s]
   std::vector<std::string> notes;
   std::vector<std::string> warnings;
@@ -39,6 +45,11 @@ struct MuscleResult {
 /// muscles.csv: by muscle excitation, activation, fibre length, tendon force, path length, as far as the method has
 /// them.
 [[nodiscard]] Recording muscle_table(const MuscleStudy& study, const MuscleResult& result);
+/// reactions.csv: by joint force on the child body and moment about the joint.
+[[nodiscard]] Recording reaction_table(const MuscleStudy& study, const MuscleResult& result);
+/// contact_forces.sto and contact_loads.xml: what the model's contacts did in a simulation, as external loads of
+/// another study. Nothing without contacts or where the motion was given.
+[[nodiscard]] std::optional<ContactRecord> contact_record(const MuscleStudy& study, const MuscleResult& result);
 /// states.sto by OpenSim's names: value and speed of each coordinate, activation and fibre length of muscles that have
 /// them as states.
 [[nodiscard]] io::Storage state_storage(const MuscleStudy& study, const MuscleResult& result);

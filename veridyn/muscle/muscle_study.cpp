@@ -76,7 +76,7 @@ ControlOptions read_control(const StudyTable& table, const MuscleStudy& study) {
   }
   o.begin = study.begin;
   o.end = study.end;
-  o.reserve_force = study.reserve_force;
+  o.reserve_forces = study.reserves;
   o.accuracy = study.accuracy;
   o.rate_Hz = study.rate_Hz;
   return o;
@@ -91,7 +91,8 @@ StaticOptimizationOptions read_static(const StudyTable& table, const MuscleStudy
                                                      {"as opensim", StaticForce::kAsOpenSim},
                                                      {"without physiology", StaticForce::kIsometric}}};
   o.force = internal::word_or_first(table, "formulation", kForces);
-  if (study.reserve_force > 0.0) o.reserve.assign(study.system->coordinates(), study.reserve_force);
+  if (std::any_of(study.reserves.begin(), study.reserves.end(), [](double r) { return r > 0.0; }))
+    o.reserve = study.reserves;
   return o;
 }
 
@@ -110,7 +111,40 @@ void refuse_other_methods(const StudyTable& motion, MuscleMethod method) {
   }
 }
 
+std::optional<ReactionFrame> read_reactions(const StudyTable& motion) {
+  constexpr internal::Words<std::optional<ReactionFrame>, 4> kFrames{{{"none", std::nullopt},
+                                                                      {"child", ReactionFrame::kChild},
+                                                                      {"parent", ReactionFrame::kParent},
+                                                                      {"ground", ReactionFrame::kGround}}};
+  return internal::word_or_first(motion, "joint_reactions", kFrames);
+}
+
+/// A contact of the model and an external load would press on one body twice.
+void check_contact(const StudyTable& subject, const MuscleStudy& study) {
+  if (!study.motion.external || subject.has("without_contact") || study.method == MuscleMethod::kInverseDynamics)
+    return;
+  const Model& model = study.system->model();
+  for (const ExternalLoad& load : study.motion.external->loads)
+    for (const SphereContact& contact : model.body_forces.contacts)
+      if (contact.sphere_body == load.body)
+        subject.fail("without_contact",
+                     fmt::format("is needed: external load '{}' and the model's contact '{}' both act on body '{}'; "
+                                 "true leaves the contacts out, false keeps them",
+                                 load.name, contact.name, model.bodies[at(load.body)].name));
+}
+
 }  // namespace
+
+std::vector<double> internal::read_reserves(const StudyTable& motion, const Model& model) {
+  std::vector<double> reserves(model.coordinates.size(), read_reserve_force(motion, 1.0));
+  const StudyTable table = motion.table_or_empty("reserves");
+  for (const std::string& key : table.keys()) {
+    const std::size_t c = coordinate_of(table, key, key, model);
+    reserves[c] = table.number(key, model.coordinates[c].unit() == "m" ? "N" : "N m");
+    if (!(reserves[c] >= 0.0)) table.fail(key, fmt::format("{:g} must be >= 0", reserves[c]));
+  }
+  return reserves;
+}
 
 ControlOptions internal::read_control_options(const StudyTable& table) {
   ControlOptions o;
@@ -165,7 +199,7 @@ MuscleStudy read_study(const Study& source, Progress& progress) {
   study.end = times.end;
   study.rate_Hz = read_rate(motion, study);
   study.accuracy = internal::read_accuracy(motion, study.accuracy);
-  study.reserve_force = internal::read_reserve_force(motion, study.reserve_force);
+  study.reserves = internal::read_reserves(motion, study.system->model());
   study.start = internal::read_start(motion, study);
   study.controls = internal::remembered(internal::read_excitations(motion, study), study);
   if (method == MuscleMethod::kForward) {
@@ -175,6 +209,10 @@ MuscleStudy read_study(const Study& source, Progress& progress) {
     study.motion = std::move(desired.motion);
     study.desired_coordinates = std::move(desired.coordinates);
   }
+  study.reactions = read_reactions(motion);
+  study.motion.external = internal::remembered(internal::read_external_loads(motion, study), study);
+  study.controls.external = study.motion.external;
+  check_contact(root.table("subject"), study);
   // Read in any case, so that a study can keep them while its method changes.
   study.control = read_control(motion.table_or_empty("control"), study);
   study.static_optimization = read_static(motion.table_or_empty("static_optimization"), study);

@@ -12,6 +12,7 @@
 #include "veridyn/muscle/osim/osim_reader.hpp"
 #include "veridyn/muscle/simulation/computed_muscle_control.hpp"
 #include "veridyn/muscle/simulation/forward_simulation.hpp"
+#include "veridyn/muscle/simulation/joint_reactions.hpp"
 #include "veridyn/muscle/simulation/musculoskeletal_system.hpp"
 #include "veridyn/muscle/simulation/static_optimization.hpp"
 
@@ -55,7 +56,9 @@ struct MuscleStudy : MuscleSubject {
   double begin = 0.0, end = 1.0;  ///< [s]
   double rate_Hz = 200.0;
   double accuracy = 1e-5;
-  double reserve_force = 1.0;  ///< of the actuator that helps each free coordinate [N m or N]; 0: none
+  std::vector<double> reserves = {};  ///< by coordinate: force of the actuator that helps it [N m or N]; 0: none
+
+  std::optional<ReactionFrame> reactions = {};  ///< what joints transmit is computed, in these axes
 
   StartState start = {};                               ///< forward
   MuscleControls controls = {};                        ///< forward
@@ -76,6 +79,7 @@ struct MuscleStudy : MuscleSubject {
 ///     locked = ["r_shoulder_elev"]   # held where they start
 ///     unlocked = []                  # move although the model locks them
 ///     without_unsupported = false    # continue without forces and constraints that are not understood
+///     without_contact = false        # leave the model's contacts out, because external loads have their forces
 ///     fiber_lengths_from = "ref.osim"  # L0 and LS with which fibres are, at the same joint angles, what those of this
 ///                                    # reference are (`match_fiber_lengths`): a first guess for a scaled model
 ///     [subject.parameters]
@@ -94,6 +98,9 @@ struct MuscleStudy : MuscleSubject {
 ///     rate = 200                     # rows of the results [Hz]
 ///     accuracy = 1e-5                # of the integration: error of a step in units of the states' sizes
 ///     reserve_force = 1              # of an actuator that helps each free coordinate, at control 1 [N m]; 0: none
+///     [motion.reserves]              # of single coordinates
+///     pelvis_ty = 0
+///     [motion]
 ///     file = "lift.mot"              # the desired motion: .mot, .sto or .csv
 ///     low_pass = "6 Hz"              # of its samples, without delay; none when left out
 ///     [[motion.ramp]]                # coordinates that the file does not have
@@ -103,6 +110,18 @@ struct MuscleStudy : MuscleSubject {
 ///     start = 0.03                   # [s]; `begin` when left out
 ///     duration = 1                   # [s]
 ///     shape = "minimum jerk"         # "half sine", "linear"
+///     joint_reactions = "child"      # in the axes of which body of a joint: "parent", "ground"; "none" when left out
+///     external_loads = "grf.xml"     # OpenSim's ExternalLoads: forces of the surroundings, with their data
+///     external_loads_data = "grf.mot"  # in place of the data file that it names
+///     external_low_pass = "20 Hz"    # of all these forces, without delay; none when left out
+///     [[motion.external_load]]       # or load by load
+///     body = "calcn_r"
+///     file = "grf.mot"
+///     force = "ground_force_v"       # columns ground_force_vx, ..., or three numbers [N]
+///     point = "ground_force_p"       # [m]; the body's origin when left out
+///     torque = "ground_torque_"      # [N m]
+///     force_frame = "ground"         # body in whose axes force and torque are
+///     point_frame = "ground"
 ///     [motion.start]                 # pose at `begin`, and of coordinates without a motion: the model's when left out
 ///     r_elbow_flex = "30 deg"
 ///     [motion.start_speed]           # forward only

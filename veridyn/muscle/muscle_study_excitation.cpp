@@ -30,8 +30,8 @@ ControlSignals without_repeats(const ControlSignals& signals) {
 }
 
 /// Generalised forces from columns COORDINATE_reserve.
-ControlSignals read_reserves(const SignalTable& table, const MusculoskeletalSystem& system, double reserve_force,
-                             Interpolation interpolation) {
+ControlSignals reserves_of(const SignalTable& table, const MusculoskeletalSystem& system,
+                           std::span<const double> reserves, Interpolation interpolation) {
   const Model& model = system.model();
   const std::size_t n = model.coordinates.size();
   std::vector<double> values(table.time.size() * n, 0.0);
@@ -41,7 +41,9 @@ ControlSignals read_reserves(const SignalTable& table, const MusculoskeletalSyst
     const int column = table.find(model.coordinates[i].name + "_reserve", "control");
     if (column < 0) continue;
     any = true;
-    for (std::size_t k = 0; k < table.time.size(); ++k) values[k * n + i] = reserve_force * table.values[at(column)][k];
+    // Where there is no reserve, a file has what the muscles lacked in newtons or newton metres.
+    const double force = reserves[i] > 0.0 ? reserves[i] : 1.0;
+    for (std::size_t k = 0; k < table.time.size(); ++k) values[k * n + i] = force * table.values[at(column)][k];
   }
   if (!any) return {};
   return without_repeats({table.time, std::move(values), n, interpolation});
@@ -55,9 +57,10 @@ Interpolation read_interpolation(const StudyTable& table) {
 }
 
 MuscleControls controls_of(const SignalTable& signals, const MusculoskeletalSystem& system,
-                           std::span<const double> otherwise, Interpolation interpolation, double reserve_force) {
+                           std::span<const double> otherwise, Interpolation interpolation,
+                           std::span<const double> reserves) {
   return {without_repeats(make_excitations(signals, system.model(), otherwise, interpolation)),
-          read_reserves(signals, system, reserve_force, interpolation)};
+          reserves_of(signals, system, reserves, interpolation)};
 }
 
 ReadFromFiles<MuscleControls> read_excitations(const StudyTable& motion, const MuscleStudy& study) {
@@ -72,9 +75,8 @@ ReadFromFiles<MuscleControls> read_excitations(const StudyTable& motion, const M
   if (motion.has("excitation_file")) {
     if (!steps.empty()) motion.fail("excitation_step", "and motion.excitation_file exclude each other");
     const std::filesystem::path path = motion.file("excitation_file");
-    return {
-        .value = controls_of(read_signals(path), *study.system, now, read_interpolation(motion), study.reserve_force),
-        .inputs = {path}};
+    return {.value = controls_of(read_signals(path), *study.system, now, read_interpolation(motion), study.reserves),
+            .inputs = {path}};
   }
   std::vector<double> times{study.begin}, values = now;
   for (const StudyTable& step : steps) {

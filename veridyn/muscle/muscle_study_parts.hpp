@@ -62,6 +62,11 @@ template <typename Value>
 [[nodiscard]] double read_accuracy(const StudyTable& table, double otherwise);
 /// `reserve_force`, of an actuator that helps each free coordinate [N m or N].
 [[nodiscard]] double read_reserve_force(const StudyTable& table, double otherwise);
+/// `reserve_force` and `[motion.reserves]`, by coordinate.
+[[nodiscard]] std::vector<double> read_reserves(const StudyTable& motion, const Model& model);
+/// `external_loads`, `[[motion.external_load]]`; null: none. They cover the study's time.
+[[nodiscard]] ReadFromFiles<std::shared_ptr<const ExternalLoads>> read_external_loads(const StudyTable& motion,
+                                                                                      const MuscleStudy& study);
 /// A load as `[[subject.load]]` has it.
 [[nodiscard]] HeldLoad read_load(const StudyTable& table, const Model& model);
 /// Where the next ramp of a coordinate begins; view of the ramp before it.
@@ -76,10 +81,11 @@ struct RampOrigin {
 [[nodiscard]] Ramp read_ramp(const StudyTable& table, const Coordinate& coordinate, const RampOrigin& origin);
 /// `interpolation`, "linear" when left out.
 [[nodiscard]] Interpolation read_interpolation(const StudyTable& table);
-/// Excitations and reserves of a file; muscles without a column keep `otherwise`.
+/// Excitations and reserves of a file; muscles without a column keep `otherwise`. `reserves` are the forces of their
+/// actuators at control 1, by coordinate.
 [[nodiscard]] MuscleControls controls_of(const SignalTable& signals, const MusculoskeletalSystem& system,
                                          std::span<const double> otherwise, Interpolation interpolation,
-                                         double reserve_force);
+                                         std::span<const double> reserves);
 /// Options of computed muscle control as `[motion.control]` has them: window, gains, least and greatest control.
 [[nodiscard]] ControlOptions read_control_options(const StudyTable& table);
 /// `[motion.start]`, `[motion.start_speed]`.

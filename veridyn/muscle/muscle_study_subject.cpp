@@ -197,6 +197,7 @@ MuscleSubject read_subject(const StudyTable& root, Progress& progress) {
       table.fail("unlocked", fmt::format("names '{}', which subject.locked names too", name));
   }
   options.without_unsupported = table.flag_or("without_unsupported", false);
+  options.without_contact = table.flag_or("without_contact", false);
   if (options.paths == PathSource::kFitted) progress.stage("fitting polynomials to the muscle paths");
   subject.system = std::make_unique<MusculoskeletalSystem>(std::move(model), options);
   if (subject.system->reduction().free().empty())

@@ -190,8 +190,8 @@ internal::ReadFromFiles<Task> with_controls(const StudyTable& table, const Muscl
   const std::filesystem::path path = table.file("excitation_file");
   const SignalTable signals = read_signals(path);
   const std::vector<double> least(subject.system->model().muscles.size(), settings.elbow.control.min_control);
-  task.controls = internal::controls_of(signals, *subject.system, least, internal::read_interpolation(table),
-                                        settings.reserve_force);
+  const std::vector<double> reserves(subject.system->coordinates(), settings.reserve_force);
+  task.controls = internal::controls_of(signals, *subject.system, least, internal::read_interpolation(table), reserves);
   if (!table.has("measured") && !table.has("file") && !table.has("duration")) {
     task.begin = signals.time.front();
     task.end = signals.time.back();

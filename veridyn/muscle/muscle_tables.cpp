@@ -57,6 +57,29 @@ Recording muscle_table(const MuscleStudy& study, const MuscleResult& result) {
   return recording;
 }
 
+Recording reaction_table(const MuscleStudy& study, const MuscleResult& result) {
+  const TimeBase time = make_time_base(result.trajectory.time);
+  Recording recording;
+  recording.source = study.title;
+  const JointReactions& reactions = *result.reactions;
+  for (std::size_t k = 0; k < reactions.joints.size(); ++k) {
+    const std::string& name = study.system->model().joints[at(reactions.joints[k])].name;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      recording.add(
+          make_channel(fmt::format("{}_f{}", name, "xyz"[axis]), "N", time, column(reactions.force, 3 * k + axis)));
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      recording.add(
+          make_channel(fmt::format("{}_m{}", name, "xyz"[axis]), "N m", time, column(reactions.moment, 3 * k + axis)));
+  }
+  return recording;
+}
+
+std::optional<ContactRecord> contact_record(const MuscleStudy& study, const MuscleResult& result) {
+  const bool moved = study.method == MuscleMethod::kForward || study.method == MuscleMethod::kComputedMuscleControl;
+  if (!moved || study.system->model().body_forces.contacts.empty()) return std::nullopt;
+  return record_contacts(*study.system, result.trajectory.time, result.trajectory.q, result.trajectory.qdot);
+}
+
 io::Storage state_storage(const MuscleStudy& study, const MuscleResult& result) {
   const Model& model = study.system->model();
   const MuscleTrajectory& t = result.trajectory;
@@ -99,8 +122,6 @@ std::optional<io::Storage> control_storage(const MuscleStudy& study, const Muscl
     const std::span<const int> free = study.system->reduction().free();
     reserved.assign(free.begin(), free.end());
   }
-  // Without an optimal force, what the muscles lacked is in newtons or newton metres.
-  const double reserve_unit = study.reserve_force > 0.0 ? study.reserve_force : 1.0;
   io::Storage storage;
   storage.source = "controls.sto";
   storage.name = "controls";
@@ -119,7 +140,9 @@ std::optional<io::Storage> control_storage(const MuscleStudy& study, const Muscl
     if (!reserved.empty()) reserve.evaluate(value_at, r.data());
     storage.time.push_back(time);
     storage.values.insert(storage.values.end(), u.begin(), u.end());
-    for (const int c : reserved) storage.values.push_back(r[at(c)] / reserve_unit);
+    // Without an optimal force, what the muscles lacked is in newtons or newton metres.
+    for (const int c : reserved)
+      storage.values.push_back(r[at(c)] / (study.reserves[at(c)] > 0.0 ? study.reserves[at(c)] : 1.0));
   };
   constexpr double kJust = 1e-9;  // before a jump [s]
   for (std::size_t i = 0; i < times.size(); ++i) {

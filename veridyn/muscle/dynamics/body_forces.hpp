@@ -9,16 +9,31 @@
 #include "veridyn/muscle/model/scalar.hpp"
 
 /// Forces between bodies: springs from point to point, bushings, contact of a sphere with a half space. Their laws are
-/// OpenSim 4.5's. Nothing allocates or throws; kinematics need `update_velocities`.
+/// OpenSim 4.5's. Each is added to generalised forces or to forces by link, see `add_force_at`. Nothing allocates or
+/// throws; kinematics need `update_velocities`.
 namespace veridyn::muscle {
 
-/// Adds the generalised forces of `force`, which acts on a link at a ground position together with a moment.
+/// Adds the generalised forces of `wrench`, which acts on a link, by coordinate.
 template <typename Scalar>
+void add_wrench(const Mechanism& mechanism, const Kinematics<Scalar>& kinematics, int link,
+                const SpatialVector<Scalar>& wrench, Scalar* tau) {
+  for (const int c : mechanism.ancestors(link)) tau[c] += kinematics.columns[at(c)].dot(wrench);
+}
+
+/// Adds `wrench` itself, by link.
+template <typename Scalar>
+void add_wrench(const Mechanism& /*mechanism*/, const Kinematics<Scalar>& /*kinematics*/, int link,
+                const SpatialVector<Scalar>& wrench, SpatialVector<Scalar>* by_link) {
+  by_link[link] += wrench;
+}
+
+/// Adds `force`, which acts on a link at a ground position together with a moment, to generalised forces by coordinate
+/// (`to` of scalars) or to forces by link (`to` of spatial vectors).
+template <typename Scalar, typename Receiver>
 void add_force_at(const Mechanism& mechanism, const Kinematics<Scalar>& kinematics, int link,
                   const Vector3<Scalar>& point, const Vector3<Scalar>& force, const Vector3<Scalar>& moment,
-                  Scalar* tau) {
-  const SpatialVector<Scalar> wrench{moment + point.cross(force), force};
-  for (const int c : mechanism.ancestors(link)) tau[c] += kinematics.columns[at(c)].dot(wrench);
+                  Receiver* to) {
+  add_wrench(mechanism, kinematics, link, SpatialVector<Scalar>{moment + point.cross(force), force}, to);
 }
 
 /// A frame fixed to a body, in ground, and how its link moves.
@@ -42,9 +57,9 @@ MovingFrame<Scalar> moving_frame(const Mechanism& mechanism, const Kinematics<Sc
 }
 
 /// Spring from point to point: tension stiffness (distance - rest_length). None while the points coincide.
-template <typename Scalar>
+template <typename Scalar, typename Receiver>
 void add_force(const PointSpring& spring, const Mechanism& mechanism, const Kinematics<Scalar>& kinematics,
-               Scalar* tau) {
+               Receiver* to) {
   using std::sqrt;
   const auto a = moving_frame(mechanism, kinematics, spring.body_1, {.translation = spring.point_1});
   const auto b = moving_frame(mechanism, kinematics, spring.body_2, {.translation = spring.point_2});
@@ -54,15 +69,15 @@ void add_force(const PointSpring& spring, const Mechanism& mechanism, const Kine
   const Scalar distance = sqrt(square);
   const Vector3<Scalar> pull = between * (spring.stiffness * (distance - spring.rest_length) / distance);
   const Vector3<Scalar> none = Vector3<Scalar>::Zero();
-  add_force_at<Scalar>(mechanism, kinematics, a.link, a.position, pull, none, tau);
-  add_force_at<Scalar>(mechanism, kinematics, b.link, b.position, -pull, none, tau);
+  add_force_at<Scalar>(mechanism, kinematics, a.link, a.position, pull, none, to);
+  add_force_at<Scalar>(mechanism, kinematics, b.link, b.position, -pull, none, to);
 }
 
 /// Bushing: of frame 2 in frame 1, angles t of a body-fixed x-y-z sequence and translation d are held by linear springs
 /// and dampers, f = -K (t, d) - C (t', d'). With t' = N w (w the relative angular velocity in frame 2) the moment is
 /// N' f_t, so that the spring's energy is K (t, d)^2 / 2. Singular at a second angle of 90 deg.
-template <typename Scalar>
-void add_force(const Bushing& bushing, const Mechanism& mechanism, const Kinematics<Scalar>& kinematics, Scalar* tau) {
+template <typename Scalar, typename Receiver>
+void add_force(const Bushing& bushing, const Mechanism& mechanism, const Kinematics<Scalar>& kinematics, Receiver* to) {
   using std::asin;
   using std::atan2;
   using std::cos;
@@ -87,8 +102,8 @@ void add_force(const Bushing& bushing, const Mechanism& mechanism, const Kinemat
                                slide.cwiseProduct(bushing.translational_damping.cast<Scalar>().eval());
   const Vector3<Scalar> force = one.rotation * push;
   const Vector3<Scalar> moment = two.rotation * Vector3<Scalar>(N.transpose() * torque);
-  add_force_at<Scalar>(mechanism, kinematics, two.link, two.position, force, moment, tau);
-  add_force_at<Scalar>(mechanism, kinematics, one.link, two.position, -force, -moment, tau);
+  add_force_at<Scalar>(mechanism, kinematics, two.link, two.position, force, moment, to);
+  add_force_at<Scalar>(mechanism, kinematics, one.link, two.position, -force, -moment, to);
 }
 
 /// Hertz's force of a sphere and a half space, 4/3 k sqrt(R k) depth^(3/2) with k = stiffness^(2/3)/2 [N].
@@ -99,12 +114,21 @@ Scalar hertz_force(const SphereContact& contact, const Scalar& depth) {
   return depth * sqrt(depth) * Scalar(4.0 / 3.0 * k * std::sqrt(contact.radius * k));
 }
 
+/// What a sphere and a half space do to each other.
+template <typename Scalar>
+struct ContactForce {
+  int sphere_link = 0, plane_link = 0;
+  Vector3<Scalar> point = Vector3<Scalar>::Zero();  ///< where it acts, in ground [m]
+  Vector3<Scalar> force = Vector3<Scalar>::Zero();  ///< on the sphere's body, in ground [N]; its opposite on the other
+  bool touches = false;
+};
+
 /// Contact of a sphere with a half space. Normal force as Hunt & Crossley (1975) have it, f = f_H (1 + 3/2 c v) with v
 /// the speed of approach, never a pull; friction f (min(s/s_t, 1) (u_d + 2 (u_s - u_d)/(1 + (s/s_t)^2)) + u_v s)
 /// against the slip s. With `smooth` the form of Serrancoli et al. (2019), whose steps are hyperbolic tangents.
 template <typename Scalar>
-void add_force(const SphereContact& contact, const Mechanism& mechanism, const Kinematics<Scalar>& kinematics,
-               Scalar* tau) {
+ContactForce<Scalar> contact_force(const SphereContact& contact, const Mechanism& mechanism,
+                                   const Kinematics<Scalar>& kinematics) {
   using std::sqrt;
   using std::tanh;
   const auto sphere = moving_frame(mechanism, kinematics, contact.sphere_body, {.translation = contact.center});
@@ -112,9 +136,10 @@ void add_force(const SphereContact& contact, const Mechanism& mechanism, const K
   const Vector3<Scalar> normal = -plane.rotation.col(0);  // the half space is where x > 0
   const Scalar depth = Scalar(contact.radius) - normal.dot(sphere.position - plane.position);
   const bool touches = value_of(depth) > 0.0;
-  if (!touches && !contact.smooth) return;
-  const Vector3<Scalar> point = sphere.position - normal * (Scalar(contact.radius) - depth * Scalar(0.5));
-  const Vector3<Scalar> slip = sphere.velocity->at(point) - plane.velocity->at(point);
+  ContactForce<Scalar> found{sphere.link, plane.link};
+  found.point = sphere.position - normal * (Scalar(contact.radius) - depth * Scalar(0.5));
+  if (!touches && !contact.smooth) return found;
+  const Vector3<Scalar> slip = sphere.velocity->at(found.point) - plane.velocity->at(found.point);
   const Scalar approach = -normal.dot(slip);
   const Vector3<Scalar> sideways = slip + normal * approach;
   Scalar force, speed;
@@ -129,7 +154,7 @@ void add_force(const SphereContact& contact, const Mechanism& mechanism, const K
     speed = sqrt(sideways.squaredNorm() + Scalar(small));
   } else {
     force = hertz_force(contact, depth) * (Scalar(1.0) + approach * (1.5 * contact.dissipation));
-    if (!(value_of(force) > 0.0)) return;
+    if (!(value_of(force) > 0.0)) return found;
     speed = sqrt(sideways.squaredNorm() + Scalar(1e-20));
   }
   const Scalar relative = speed / contact.transition_velocity;
@@ -138,19 +163,29 @@ void add_force(const SphereContact& contact, const Mechanism& mechanism, const K
       grip * (Scalar(contact.dynamic_friction) + Scalar(2.0 * (contact.static_friction - contact.dynamic_friction)) /
                                                      (Scalar(1.0) + relative * relative)) +
       speed * contact.viscous_friction;
-  const Vector3<Scalar> total = normal * force - sideways * (force * friction / speed);
-  const Vector3<Scalar> none = Vector3<Scalar>::Zero();
-  add_force_at<Scalar>(mechanism, kinematics, sphere.link, point, total, none, tau);
-  add_force_at<Scalar>(mechanism, kinematics, plane.link, point, -total, none, tau);
+  found.force = normal * force - sideways * (force * friction / speed);
+  found.touches = true;
+  return found;
 }
 
-/// Adds the generalised forces of all (by coordinate).
-template <typename Scalar>
+/// Adds it to both bodies.
+template <typename Scalar, typename Receiver>
+void add_force(const SphereContact& contact, const Mechanism& mechanism, const Kinematics<Scalar>& kinematics,
+               Receiver* to) {
+  const ContactForce<Scalar> found = contact_force(contact, mechanism, kinematics);
+  if (!found.touches) return;
+  const Vector3<Scalar> none = Vector3<Scalar>::Zero();
+  add_force_at<Scalar>(mechanism, kinematics, found.sphere_link, found.point, found.force, none, to);
+  add_force_at<Scalar>(mechanism, kinematics, found.plane_link, found.point, -found.force, none, to);
+}
+
+/// Adds all.
+template <typename Scalar, typename Receiver>
 void add_body_forces(const BodyForces& forces, const Mechanism& mechanism, const Kinematics<Scalar>& kinematics,
-                     Scalar* tau) {
-  for (const PointSpring& spring : forces.springs) add_force(spring, mechanism, kinematics, tau);
-  for (const Bushing& bushing : forces.bushings) add_force(bushing, mechanism, kinematics, tau);
-  for (const SphereContact& contact : forces.contacts) add_force(contact, mechanism, kinematics, tau);
+                     Receiver* to) {
+  for (const PointSpring& spring : forces.springs) add_force(spring, mechanism, kinematics, to);
+  for (const Bushing& bushing : forces.bushings) add_force(bushing, mechanism, kinematics, to);
+  for (const SphereContact& contact : forces.contacts) add_force(contact, mechanism, kinematics, to);
 }
 
 }  // namespace veridyn::muscle

@@ -64,7 +64,27 @@ bool means(std::string_view column, std::string_view name, std::string_view suff
   return false;
 }
 
-/// Passes what is below the cut-off, stops what is above 1.5 times it.
+}  // namespace
+
+int SignalTable::find(std::string_view name, std::string_view suffix) const {
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i] == name) return static_cast<int>(i);
+  }
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (means(names[i], name, suffix)) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+SignalTable read_signals(const std::filesystem::path& path) {
+  const std::string text = read_file(path);
+  if (io::is_storage(text)) return from_storage(io::parse_storage(text, path.string()));
+  Recording recording = io::read_recording(path);
+  recording.source = path.string();
+  // A topic name precedes the column's, except in tables of the form that this program writes.
+  return from_recording(recording);
+}
+
 numerics::FirKernel low_pass_of(const SignalTable& table, double cut_off_Hz) {
   const std::vector<double>& t = table.time;
   const double rate = t.size() < 2 ? 0.0 : static_cast<double>(t.size() - 1) / (t.back() - t.front());
@@ -88,27 +108,6 @@ void check_finite(const SignalTable& table, std::size_t column) {
   if (bad == v.end()) return;
   throw InputError(table.source, fmt::format("column '{}' has no value at {} s", table.names[column],
                                              table.time[at(bad - v.begin())]));
-}
-
-}  // namespace
-
-int SignalTable::find(std::string_view name, std::string_view suffix) const {
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (names[i] == name) return static_cast<int>(i);
-  }
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (means(names[i], name, suffix)) return static_cast<int>(i);
-  }
-  return -1;
-}
-
-SignalTable read_signals(const std::filesystem::path& path) {
-  const std::string text = read_file(path);
-  if (io::is_storage(text)) return from_storage(io::parse_storage(text, path.string()));
-  Recording recording = io::read_recording(path);
-  recording.source = path.string();
-  // A topic name precedes the column's, except in tables of the form that this program writes.
-  return from_recording(recording);
 }
 
 Motion make_motion(const SignalTable& table, const Model& model, const MotionOptions& options) {

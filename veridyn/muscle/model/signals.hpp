@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "veridyn/muscle/model/model.hpp"
+#include "veridyn/numerics/filters.hpp"
 #include "veridyn/numerics/piecewise_polynomial.hpp"
 
 namespace veridyn::muscle {
@@ -30,6 +32,14 @@ struct SignalTable {
 /// @throws InputError with file and line for what the format refuses, time that does not increase, missing cells.
 [[nodiscard]] SignalTable read_signals(const std::filesystem::path& path);
 
+/// Refuses a column that has a cell without a finite value. @throws InputError naming column and time.
+void check_finite(const SignalTable& table, std::size_t column);
+/// A zero-phase low-pass for the table's samples: passes what is below the cut-off, stops what is above 1.5 times it.
+/// @throws InputError when samples are not evenly spaced or too few.
+[[nodiscard]] numerics::FirKernel low_pass_of(const SignalTable& table, double cut_off_Hz);
+
+struct ExternalLoads;
+
 /// A motion as functions of time, one a coordinate of the model; quintic splines through the samples.
 struct Motion {
   double begin = 0.0, end = 0.0;                                         ///< [s]
@@ -38,6 +48,8 @@ struct Motion {
   std::vector<std::string> missing;
   /// Coordinates that leave their range by more than a thousandth of it.
   std::vector<std::string> beyond_range;
+  /// Forces of the surroundings during the motion; null: none.
+  std::shared_ptr<const ExternalLoads> external = {};
 };
 
 /// How a motion is made of samples.

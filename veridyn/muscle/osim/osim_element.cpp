@@ -55,7 +55,7 @@ std::string last_part(std::string_view path) {
   return std::string(slash == std::string_view::npos ? path : path.substr(slash + 1));
 }
 
-Document::Document(std::string text, std::string name)
+Document::Document(std::string text, std::string name, const char* type)
     : text_(std::move(text)), name_(std::move(name)), parsed_(text_) {
   if (text_.find('\0') != std::string::npos) {
     throw InputError(fmt::format("{}:{}", name_, line_of(text_, std::ssize(text_.substr(0, text_.find('\0'))))),
@@ -72,13 +72,14 @@ Document::Document(std::string text, std::string name)
     // Formats up to 1.9 had the model as their root.
     for (const char* old : {"Model", "SimbodyModel", "SimmModel", "ActuatedModel_SDFast"})
       if (tree_.child(old)) refuse_old_format(name_, "format 1.9 or older");
-    throw InputError(name_, "has no OpenSimDocument element, so it is not an OpenSim model");
+    throw InputError(name_, fmt::format("has no OpenSimDocument element, so it is not an OpenSim {}",
+                                        std::strcmp(type, "Model") == 0 ? "model" : type));
   }
   version_ = root.attribute("Version").as_int();
   if (version_ > 0 && version_ < 20000)
     refuse_old_format(name_, fmt::format("format {}.{}", version_ / 10000, version_ / 100 % 100));
-  model_ = root.child("Model");
-  if (!model_) throw InputError(name_, "its OpenSimDocument holds no Model");
+  model_ = root.child(type);
+  if (!model_) throw InputError(name_, fmt::format("its OpenSimDocument holds no {}", type));
   defaults_ = model_.child("defaults");
   if (!defaults_) defaults_ = root.child("defaults");
 }

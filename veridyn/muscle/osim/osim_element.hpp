@@ -14,14 +14,16 @@ namespace veridyn::muscle::osim {
 /// errors name lines, and writing back replaces single numbers.
 class Document {
  public:
-  /// @throws InputError with line when the text is not XML or has no OpenSimDocument with a Model.
-  Document(std::string text, std::string name);
+  /// @throws InputError with line when the text is not XML or has no OpenSimDocument with a Model (or another object,
+  /// `type`).
+  Document(std::string text, std::string name, const char* type = "Model");
   Document(const Document&) = delete;
   Document& operator=(const Document&) = delete;
 
   [[nodiscard]] const std::string& text() const { return text_; }
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] int version() const { return version_; }
+  /// The Model, or what object the document was opened for.
   [[nodiscard]] pugi::xml_node model() const { return model_; }
   /// Node of `<defaults>` for objects of this type; empty when there is none.
   [[nodiscard]] pugi::xml_node defaults(const char* type) const;

@@ -74,6 +74,11 @@ class MusclePaths {
   template <typename Scalar>
   void speeds(const PathWorkspace<Scalar>& workspace, const Scalar* qdot, Scalar* speeds) const;
 
+  /// Adds what a tension [N] along one muscle's path does to the links that it pulls, by link: strings at their ends,
+  /// wraps at their tangent points. `workspace` is overwritten.
+  void add_tension(const Kinematics<double>& kinematics, const double* q, int muscle, double tension,
+                   PathWorkspace<double>& workspace, std::span<SpatialVector<double>> by_link) const;
+
   /// One muscle's path as a polyline in ground, for drawings: its active points and, on each wrap, `arc_points` points
   /// between the tangent points (on the surface, along a section of it).
   [[nodiscard]] std::vector<Eigen::Vector3d> polyline(const Kinematics<double>& kinematics, const double* q, int muscle,

@@ -1,6 +1,11 @@
 #include "veridyn/muscle/path/muscle_path_evaluation.hpp"
 
 namespace veridyn::muscle {
+
+void MusclePaths::add_tension(const Kinematics<double>& kinematics, const double* q, int muscle, double tension,
+                              PathWorkspace<double>& workspace, std::span<SpatialVector<double>> by_link) const {
+  PathSolver<double>(*this, kinematics, q, workspace, PathPlaces::kEvery).pull(muscle, tension, by_link.data());
+}
 namespace internal {
 
 template SpheroidArrival<double> spheroid_geodesic<double>(const Spheroid&, const Eigen::Vector3d&,

@@ -34,6 +34,8 @@ class PathSolver {
   void all(std::span<const std::uint8_t> skip = {});
   /// Solves one path; its nodes are in the workspace. Returns their number.
   std::size_t nodes_of(int muscle);
+  /// Adds what a tension along one path does to the links that it pulls, by link, forces in ground.
+  void pull(int muscle, const Scalar& tension, SpatialVector<Scalar>* by_link);
   /// Of a wrap that is on the path solved last.
   const WrapResult<Scalar>& result(std::size_t wrap) const { return *w_.result[wrap]; }
 
@@ -101,6 +103,8 @@ class PathSolver {
   const Kinematics<Scalar>& kinematics_;
   const Scalar* q_;
   PathWorkspace<Scalar>& w_;
+  SpatialVector<Scalar>* by_link_ = nullptr;  ///< where `add_string` adds forces of `tension_`; null: nowhere
+  Scalar tension_{};
   std::size_t n_stations_ = 0;
   unsigned done_ = 0;  ///< fading objects that `blended` has decided on
   int side_ = 0;

@@ -25,6 +25,15 @@ inline Scalar PathSolver<Scalar>::general(const Path& path, PathFlag& flag) {
 }
 
 template <typename Scalar>
+inline void PathSolver<Scalar>::pull(int muscle, const Scalar& tension, SpatialVector<Scalar>* by_link) {
+  by_link_ = by_link;
+  tension_ = tension;
+  PathFlag flag = PathFlag::kFine;
+  general<true>(paths_.muscles_[static_cast<std::size_t>(muscle)], flag);
+  by_link_ = nullptr;
+}
+
+template <typename Scalar>
 template <bool kGradient>
 inline Scalar PathSolver<Scalar>::blended(const Path& path, unsigned mask, const Scalar& factor) {
   for (std::size_t i = 0; i < path.wraps.size(); ++i) {
@@ -108,6 +117,11 @@ template <typename Scalar>
 inline void PathSolver<Scalar>::add_string(const Path& path, const Scalar& factor, const Vector& x, const Vector& g,
                                            int from, int to) {
   const Vector m = x.cross(g);
+  if (by_link_ != nullptr) {
+    const SpatialVector<Scalar> wrench{m, g};
+    by_link_[from].add_scaled(tension_ * factor, wrench);
+    by_link_[to].add_scaled(Scalar(-tension_ * factor), wrench);
+  }
   for (std::size_t k = path.pairs[0]; k < path.pairs[1]; ++k) {
     const int c = paths_.pairs_[k].coordinate;
     const int sign = static_cast<int>(paths_.moves(c, to)) - static_cast<int>(paths_.moves(c, from));

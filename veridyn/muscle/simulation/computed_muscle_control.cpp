@@ -38,6 +38,7 @@ class Controller {
       : system_(system),
         desired_(desired_motion(system, motion)),
         options_(options),
+        external_(motion.external),
         evaluator_(system),
         ahead_(system),
         window_(system.muscles()),
@@ -64,7 +65,11 @@ class Controller {
     for (auto& node : nodes_) node.resize(muscles_);
     // Reserves that the options leave out cost so much that they carry only what the muscles cannot.
     constexpr double kCostlyReserve = 1e-3;
-    reserve_optimal_ = options.reserve_force > 0.0 ? options.reserve_force : kCostlyReserve;
+    for (const int c : system.reduction().free()) {
+      const double force = options.reserve_forces.empty() ? options.reserve_force : options.reserve_forces[at(c)];
+      reserve_optimal_.push_back(force > 0.0 ? force : kCostlyReserve);
+      reserve_limit_.push_back(std::max(force, 0.1));
+    }
     for (std::size_t m = 0; m < muscles_; ++m) {
       low_[m] = std::max(options.min_control, system.muscles().settings(m).min_control);
       high_[m] = std::min(options.max_control, system.muscles().settings(m).max_control);
@@ -74,8 +79,9 @@ class Controller {
   ControlResult run(const StartState& pose, Progress& progress);
 
  private:
-  /// Moments that the accelerations zddot_ need at the state (z_, zdot_), less those of limits; moment arms.
-  void update_required_moments() {
+  /// Moments that the accelerations zddot_ need at the state (z_, zdot_), less those of limits and of the surroundings
+  /// at `time`; moment arms.
+  void update_required_moments(double time) {
     ahead_.set_motion(z_.data(), zdot_.data());
     const ExpandedState<double>& s = ahead_.dynamics().state();
     const CoordinateReduction& reduction = system_.reduction();
@@ -87,6 +93,7 @@ class Controller {
     ahead_.dynamics().dynamics().inverse_dynamics(qddot_.data(), nullptr, moment_.data());
     std::fill(reserve_.begin(), reserve_.end(), 0.0);
     ahead_.add_passive_forces(reserve_.data());
+    ahead_.add_external_forces(external_.get(), time, reserve_.data());
     qp_.b.setZero();
     qp_.A.setZero();
     for (std::size_t c = 0; c < moment_.size(); ++c) {
@@ -115,7 +122,7 @@ class Controller {
     }
     for (std::size_t f = 0; f < desired_.size(); ++f) {
       const auto i = static_cast<Eigen::Index>(muscles_ + f);
-      qp_.weight(i) = 2.0 / (reserve_optimal_ * reserve_optimal_);
+      qp_.weight(i) = 2.0 / (reserve_optimal_[f] * reserve_optimal_[f]);
       qp_.A(static_cast<Eigen::Index>(f), i) = 1.0;
     }
     static_cast<void>(qp_.solve());
@@ -126,18 +133,27 @@ class Controller {
     }
   }
 
+  /// Whether a reserve gives more than its force.
+  [[nodiscard]] bool overloaded() const {
+    for (std::size_t f = 0; f < desired_.size(); ++f)
+      if (std::abs(reserve_[at(system_.reduction().free()[f])]) > reserve_limit_[f]) return true;
+    return false;
+  }
+
   void start_muscles(double* x);
   [[nodiscard]] bool plan_window(double t, double end, const double* x);
 
   const MusculoskeletalSystem& system_;
   std::vector<numerics::PiecewisePolynomial> desired_;  ///< by free coordinate
   ControlOptions options_;
+  std::shared_ptr<const ExternalLoads> external_;
   SystemEvaluator<double> evaluator_, ahead_;
   MuscleWindow window_;
   SystemStepper stepper_;
   numerics::SeparableQp qp_;
   std::size_t muscles_;
-  double reserve_optimal_ = 1.0;
+  /// By free coordinate: force at control 1, and what more than that counts as overloaded [N m or N].
+  std::vector<double> reserve_optimal_, reserve_limit_;
   std::vector<double> low_, high_, excitation_, force_low_, force_high_, force_, optimal_, activation_, fiber_;
   std::vector<double> demand_, planned_speed_;  ///< accelerations of the last window's end, speeds it should have left
   std::vector<double> z_, zdot_, zddot_, moment_, qddot_, reserve_;
@@ -156,7 +172,7 @@ void Controller::start_muscles(double* x) {
     demand_[f] = w.curvature;
     planned_speed_[f] = w.slope;
   }
-  update_required_moments();
+  update_required_moments(options_.begin);
   const auto force_at = [&](std::span<const double> activation, std::span<double> force) {
     std::vector<double> fibers(muscles_);
     system_.muscles().equilibrium(activation, ahead_.path_length(), fibers);
@@ -196,7 +212,7 @@ bool Controller::plan_window(double t, double end, const double* x) {
     if (k + 1 < MuscleWindow::kNodes) {
       ahead_.set_motion(z_.data(), zdot_.data());
     } else {
-      update_required_moments();  // the last node: the window's end
+      update_required_moments(end);  // the last node: the window's end
     }
     std::copy(ahead_.path_length().begin(), ahead_.path_length().end(), nodes_[k].begin());
   }
@@ -243,15 +259,12 @@ ControlResult Controller::run(const StartState& pose, Progress& progress) {
       result.trajectory.trouble = "the muscles alone could not be integrated over a window";
       break;
     }
-    if (std::any_of(reserve_.begin(), reserve_.end(),
-                    [&](double r) { return std::abs(r) > std::max(options_.reserve_force, 0.1); })) {
-      result.overloaded.push_back(t);
-    }
+    if (overloaded()) result.overloaded.push_back(t);
     times.push_back(t);
     excitations.insert(excitations.end(), excitation_.begin(), excitation_.end());
     reserves.insert(reserves.end(), reserve_.begin(), reserve_.end());
-    const auto derivative = [&](double, double step, double* state, double* rate) {
-      return evaluator_.stage(step, state, {excitation_, reserve_}, rate);
+    const auto derivative = [&](double time, double step, double* state, double* rate) {
+      return evaluator_.stage(step, state, {excitation_, reserve_, external_.get(), time}, rate);
     };
     stepper_.restart(true);
     if (stepper_.advance(derivative, t, x.data(), end, [](double, double) { return true; }) !=
@@ -265,6 +278,7 @@ ControlResult Controller::run(const StartState& pose, Progress& progress) {
     }
   }
   result.controls.excitation = ControlSignals(times, std::move(excitations), muscles_, Interpolation::kHold);
+  result.controls.external = external_;
   result.controls.reserve =
       ControlSignals(std::move(times), std::move(reserves), system_.coordinates(), Interpolation::kHold);
   return result;
@@ -280,6 +294,9 @@ void check(const MusculoskeletalSystem& system, const ControlOptions& o) {
   require(o.min_control >= 0.0 && o.min_control < o.max_control && o.max_control <= 1.0,
           "0 <= min_control < max_control <= 1 is required");
   require(o.reserve_force >= 0.0, "the reserve's optimal force must not be negative");
+  require(o.reserve_forces.empty() || o.reserve_forces.size() == system.coordinates(),
+          "reserve forces must be as many as coordinates");
+  for (const double force : o.reserve_forces) require(force >= 0.0, "a reserve's optimal force must not be negative");
   require(system.muscles().size() > 0, "the model has no muscles");
 }
 

@@ -19,9 +19,10 @@ struct ControlOptions {
   double kv = 20.0;       ///< speed gain [1/s]
   double min_control = 0.02;
   double max_control = 1.0;
-  double reserve_force = 1.0;  ///< optimal force of a coordinate's reserve [N m or N]; 0: no reserves
-  double accuracy = 1e-5;      ///< of the integration
-  double rate_Hz = 200.0;      ///< of the rows of the result; 0: the integrator's steps
+  double reserve_force = 1.0;            ///< optimal force of a coordinate's reserve [N m or N]; 0: no reserves
+  std::vector<double> reserve_forces{};  ///< by coordinate instead; empty: the same for all
+  double accuracy = 1e-5;                ///< of the integration
+  double rate_Hz = 200.0;                ///< of the rows of the result; 0: the integrator's steps
 };
 
 /// A motion found by computed muscle control, and what reproduces it.

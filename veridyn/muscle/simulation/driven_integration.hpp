@@ -35,7 +35,7 @@ class ControlsAtInstant {
     if (!reserve_.empty() && controls_.reserve.interpolation() == Interpolation::kLinear) {
       controls_.reserve.evaluate(time, reserve_.data());
     }
-    return {excitation_, reserve_};
+    return {excitation_, reserve_, controls_.external.get(), time};
   }
 
  private:

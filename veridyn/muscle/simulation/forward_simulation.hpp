@@ -1,12 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/simulation_end.hpp"
 #include "veridyn/estimation/regression/regression_data.hpp"
+#include "veridyn/muscle/model/external_load.hpp"
 #include "veridyn/muscle/model/signals.hpp"
 #include "veridyn/muscle/simulation/musculoskeletal_system.hpp"
 
@@ -73,6 +75,8 @@ struct MuscleControls {
   ControlSignals excitation;  ///< by muscle
   /// Generalised forces by coordinate, such as the reserves of computed muscle control; none when empty.
   ControlSignals reserve;
+  /// Forces of the surroundings; null: none.
+  std::shared_ptr<const ExternalLoads> external = {};
 };
 
 /// Integrates the system from `start`, with error control (`SystemStepper`). Instants at which held signals

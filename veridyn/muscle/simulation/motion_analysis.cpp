@@ -36,23 +36,29 @@ Instant instant_of(const Motion& motion, const Eigen::VectorXd& rest, const Coor
   return now;
 }
 
-MotionAnalysis empty_analysis(const MusculoskeletalSystem& system, const std::vector<double>& time) {
+MotionAnalysis empty_analysis(const MusculoskeletalSystem& system, const std::vector<double>& time, bool loaded) {
   MotionAnalysis a;
   a.time = time;
   const auto rows = signed_index(time.size());
   for (auto* m : {&a.q, &a.qdot, &a.qddot, &a.moment})
     m->setZero(rows, static_cast<Eigen::Index>(system.coordinates()));
+  if (loaded) a.external.setZero(rows, static_cast<Eigen::Index>(system.coordinates()));
   for (auto* m : {&a.path_length, &a.path_speed}) m->setZero(rows, signed_index(system.muscles().size()));
   return a;
 }
 
 /// Sets the evaluator to an instant and writes what inverse dynamics finds there into a row.
-void analyse(const Instant& now, Eigen::Index row, SystemEvaluator<double>& evaluator, MotionAnalysis& a) {
+void analyse(const Instant& now, Eigen::Index row, const ExternalLoads* external, SystemEvaluator<double>& evaluator,
+             MotionAnalysis& a) {
   evaluator.set_all(now.q.data(), now.qdot.data());
   a.q.row(row) = now.q;
   a.qdot.row(row) = now.qdot;
   a.qddot.row(row) = now.qddot;
   evaluator.dynamics().dynamics().inverse_dynamics(now.qddot.data(), nullptr, a.moment.row(row).data());
+  if (external != nullptr) {
+    evaluator.add_external_forces(external, a.time[at(row)], a.external.row(row).data());
+    a.moment.row(row) -= a.external.row(row);
+  }
   for (Eigen::Index m = 0; m < a.path_length.cols(); ++m) {
     a.path_length(row, m) = evaluator.path_length()[at(m)];
     a.path_speed(row, m) = evaluator.path_speed()[at(m)];
@@ -78,17 +84,18 @@ std::vector<double> frame_times(double begin, double end, double rate_Hz) {
 
 MotionAnalysis analyse_motion(const MusculoskeletalSystem& system, const Motion& motion, const Eigen::VectorXd& rest,
                               const std::vector<double>& time) {
-  MotionAnalysis analysis = empty_analysis(system, time);
+  MotionAnalysis analysis = empty_analysis(system, time, motion.external != nullptr);
   SystemEvaluator<double> evaluator(system);
   for (std::size_t i = 0; i < time.size(); ++i)
-    analyse(instant_of(motion, rest, system.reduction(), time[i]), signed_index(i), evaluator, analysis);
+    analyse(instant_of(motion, rest, system.reduction(), time[i]), signed_index(i), motion.external.get(), evaluator,
+            analysis);
   return analysis;
 }
 
 MotionAnalysis optimise_motion(const MusculoskeletalSystem& system, const Motion& motion, const Eigen::VectorXd& rest,
                                const std::vector<double>& time, const StaticOptimizationOptions& options,
                                Progress& progress) {
-  MotionAnalysis analysis = empty_analysis(system, time);
+  MotionAnalysis analysis = empty_analysis(system, time, motion.external != nullptr);
   const auto rows = signed_index(time.size());
   const auto muscles = signed_index(system.muscles().size());
   const std::span<const int> free = system.reduction().free();
@@ -110,7 +117,7 @@ MotionAnalysis optimise_motion(const MusculoskeletalSystem& system, const Motion
   for (std::size_t i = 0; i < time.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     const Instant now = instant_of(motion, rest, system.reduction(), time[i]);
-    analyse(now, row, evaluator, analysis);
+    analyse(now, row, motion.external.get(), evaluator, analysis);
     const Eigen::VectorXd slope = coupled_slopes(now.q, system.reduction());
     limits.setZero();
     evaluator.add_passive_forces(limits.data());

@@ -16,6 +16,7 @@ struct MotionAnalysis {
   std::vector<double> time;                       ///< [s]
   estimation::RowMatrix q, qdot, qddot;           ///< coordinates without a motion rest; coupled ones follow
   estimation::RowMatrix moment;                   ///< generalised forces that the motion needs [N m or N]
+  estimation::RowMatrix external;                 ///< those of the surroundings, which `moment` is less; empty: none
   estimation::RowMatrix path_length, path_speed;  ///< [m], [m/s]
   // Of static optimisation; empty otherwise.
   estimation::RowMatrix activation;
@@ -31,8 +32,8 @@ struct MotionAnalysis {
 /// Instants from `begin` to `end`, `rate_Hz` apart.
 [[nodiscard]] std::vector<double> frame_times(double begin, double end, double rate_Hz);
 
-/// Inverse dynamics of a motion: M qddot + h as in `inverse_dynamics`, for every coordinate. `rest` gives coordinates
-/// that are not in the motion.
+/// Inverse dynamics of a motion: M qddot + h as in `inverse_dynamics`, for every coordinate, less what the motion's
+/// external loads contribute. `rest` gives coordinates that are not in the motion.
 [[nodiscard]] MotionAnalysis analyse_motion(const MusculoskeletalSystem& system, const Motion& motion,
                                             const Eigen::VectorXd& rest, const std::vector<double>& time);
 

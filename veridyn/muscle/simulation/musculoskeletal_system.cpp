@@ -30,6 +30,10 @@ Model prepare(Model model, const SystemOptions& options, std::vector<std::string
                     fmt::join(left_out, ", "), left_out.size() == 1 ? "is" : "are"));
   }
   if (!left_out.empty()) notes.push_back(fmt::format("left out, not understood: {}", fmt::join(left_out, ", ")));
+  if (options.without_contact && !model.body_forces.contacts.empty()) {
+    notes.push_back(fmt::format("left out: {} contacts of the model", model.body_forces.contacts.size()));
+    model.body_forces.contacts.clear();
+  }
   for (const Muscle& muscle : model.muscles) {
     if (!muscle.enabled) notes.push_back(fmt::format("muscle '{}' is switched off in the file", muscle.name()));
   }

@@ -38,6 +38,8 @@ struct SystemOptions {
   std::vector<std::string> unlocked{};
   /// Continue without forces and constraints of the model that are not understood.
   bool without_unsupported = false;
+  /// Leave the model's contacts out: what they do is among the external loads.
+  bool without_contact = false;
 };
 
 /// What distinguishes a system from another one with the same paths: a task from the model that all tasks share.

@@ -23,4 +23,17 @@ PassiveForces::PassiveForces(const Model& model, const Mechanism& mechanism) : b
   if (!laws_.empty()) paths_ = std::make_shared<const MusclePaths>(with_passive_paths(model), mechanism);
 }
 
+void PassiveForces::add_to_links(const Mechanism& mechanism, const Kinematics<double>& kinematics, const double* q,
+                                 const double* qdot, std::span<SpatialVector<double>> by_link) const {
+  if (!bodies_.empty()) add_body_forces(bodies_, mechanism, kinematics, by_link.data());
+  if (!paths_) return;
+  PathWorkspace<double> lengths(*paths_), pulling(*paths_);
+  paths_->evaluate(kinematics, q, lengths);
+  std::vector<double> speed(laws_.size());
+  paths_->speeds(lengths, qdot, speed.data());
+  for (std::size_t m = 0; m < laws_.size(); ++m)
+    paths_->add_tension(kinematics, q, static_cast<int>(m), passive_tension(laws_[m], lengths.length[m], speed[m]),
+                        pulling, by_link);
+}
+
 }  // namespace veridyn::muscle

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "veridyn/muscle/dynamics/body_forces.hpp"
@@ -31,6 +32,10 @@ class PassiveForces {
     if (paths_) made.paths.emplace(*paths_);
     return made;
   }
+
+  /// Adds the forces themselves, by link. Allocates.
+  void add_to_links(const Mechanism& mechanism, const Kinematics<double>& kinematics, const double* q,
+                    const double* qdot, std::span<SpatialVector<double>> by_link) const;
 
   /// Adds their generalised forces (by coordinate) in the state of `kinematics`, whose velocities are set. Does not
   /// allocate or throw.

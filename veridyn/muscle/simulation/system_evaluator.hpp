@@ -7,6 +7,7 @@
 #include "veridyn/muscle/actuator/fiber_solver.hpp"
 #include "veridyn/muscle/actuator/muscle_group.hpp"
 #include "veridyn/muscle/dynamics/coordinate_reduction.hpp"
+#include "veridyn/muscle/model/external_load.hpp"
 #include "veridyn/muscle/path/path_workspace.hpp"
 #include "veridyn/muscle/simulation/musculoskeletal_system.hpp"
 
@@ -16,6 +17,8 @@ namespace veridyn::muscle {
 struct SystemInputs {
   std::span<const double> excitation;        ///< by muscle
   std::span<const double> coordinate_force;  ///< by coordinate, in addition to the model's; empty: zero [N m or N]
+  const ExternalLoads* external = nullptr;   ///< forces of the surroundings; null: none
+  double time = 0.0;                         ///< at which they are taken [s]
 };
 
 /// View of a system, which must outlive it: the workspace of one thread for the derivative of a state and everything
@@ -48,6 +51,8 @@ class SystemEvaluator {
 
   /// Adds the generalised forces that follow from the motion set: springs, limits, contact, passive paths.
   void add_passive_forces(Scalar* tau);
+  /// Adds those of the surroundings at a time; nothing when `loads` is null.
+  void add_external_forces(const ExternalLoads* loads, double time, Scalar* tau);
 
   // After a call above, in the model's order.
   [[nodiscard]] const Scalar* q() const { return q_; }

@@ -4,6 +4,7 @@
 
 #include "veridyn/core/index.hpp"
 #include "veridyn/muscle/dynamics/coordinate_forces.hpp"
+#include "veridyn/muscle/dynamics/external_forces.hpp"
 #include "veridyn/muscle/model/simulation_jet.hpp"
 #include "veridyn/muscle/simulation/system_evaluator.hpp"
 
@@ -106,6 +107,11 @@ void SystemEvaluator<Scalar>::add_passive_forces(Scalar* tau) {
 }
 
 template <typename Scalar>
+void SystemEvaluator<Scalar>::add_external_forces(const ExternalLoads* loads, double time, Scalar* tau) {
+  if (loads != nullptr) muscle::add_external_forces(*loads, time, system_->mechanism(), reduced_.kinematics(), tau);
+}
+
+template <typename Scalar>
 bool SystemEvaluator<Scalar>::write_rates(const Scalar* x, const SystemInputs& inputs, Scalar* rate) {
   const StateLayout& layout = system_->layout();
   if (inputs.coordinate_force.empty()) {
@@ -118,6 +124,7 @@ bool SystemEvaluator<Scalar>::write_rates(const Scalar* x, const SystemInputs& i
     tau_[at(pairs[i].coordinate)] -= force_[at(pairs[i].muscle)] * gradient_[i];
   }
   add_passive_forces(tau_.data());
+  add_external_forces(inputs.external, inputs.time, tau_.data());
   for (std::size_t i = 0; i < layout.free; ++i) rate[i] = x[layout.free + i];
   if (!reduced_.forward_dynamics(tau_.data(), nullptr, rate + layout.free).usable()) return false;
   for (std::size_t m = 0; m < muscles_.size(); ++m) {

@@ -1,0 +1,128 @@
+#include "veridyn/muscle/simulation/joint_reactions.hpp"
+
+#include <algorithm>
+
+#include "veridyn/core/index.hpp"
+#include "veridyn/muscle/dynamics/external_forces.hpp"
+#include "veridyn/muscle/simulation/system_evaluator.hpp"
+
+namespace veridyn::muscle {
+namespace {
+
+/// View of a system and its motion: one instant after another.
+class ReactionSolver {
+ public:
+  ReactionSolver(const MusculoskeletalSystem& system, const MovedModel& moved)
+      : system_(system),
+        moved_(moved),
+        evaluator_(system),
+        paths_(system.paths()),
+        applied_(static_cast<std::size_t>(system.mechanism().links())),
+        tau_(system.coordinates()),
+        z_(system.layout().free),
+        zdot_(z_.size()),
+        zddot_(z_.size()) {}
+
+  /// Forces of the row on all links; `dynamics().joint_force` holds what joints transmit afterwards.
+  void solve(Eigen::Index row) {
+    const Eigen::VectorXd q = moved_.q.row(row), qdot = moved_.qdot.row(row);
+    Eigen::VectorXd qddot;
+    if (moved_.qddot.size() > 0) {
+      qddot = moved_.qddot.row(row);
+      evaluator_.set_all(q.data(), qdot.data());
+    } else {
+      qddot = accelerations(q, qdot, row);
+    }
+    q_ = q;
+    pull(row);
+    Dynamics<double>& dynamics = evaluator_.dynamics().dynamics();
+    dynamics.inverse_dynamics(qddot.data(), applied_.data(), tau_.data());
+  }
+
+  [[nodiscard]] const Dynamics<double>& dynamics() { return evaluator_.dynamics().dynamics(); }
+
+ private:
+  Eigen::VectorXd accelerations(const Eigen::VectorXd& q, const Eigen::VectorXd& qdot, Eigen::Index row) {
+    const std::span<const int> free = system_.reduction().free();
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      z_[i] = q(free[i]);
+      zdot_[i] = qdot(free[i]);
+    }
+    evaluator_.hold(q.data());
+    evaluator_.set_motion(z_.data(), zdot_.data());
+    std::fill(tau_.begin(), tau_.end(), 0.0);
+    for (std::size_t c = 0; c < tau_.size() && moved_.reserve.size() > 0; ++c)
+      tau_[c] = moved_.reserve(row, signed_index(c));
+    const auto pairs = system_.pairs();
+    for (std::size_t k = 0; k < pairs.size() && moved_.tendon_force.size() > 0; ++k)
+      tau_[at(pairs[k].coordinate)] -= moved_.tendon_force(row, pairs[k].muscle) * evaluator_.path_gradient()[k];
+    if (moved_.passive) evaluator_.add_passive_forces(tau_.data());
+    evaluator_.add_external_forces(moved_.external, moved_.time[at(row)], tau_.data());
+    static_cast<void>(evaluator_.dynamics().forward_dynamics(tau_.data(), nullptr, zddot_.data()));
+    return evaluator_.dynamics().qddot();
+  }
+
+  /// All forces on links but those of joints.
+  void pull(Eigen::Index row) {
+    const Mechanism& mechanism = system_.mechanism();
+    const Kinematics<double>& kinematics = evaluator_.dynamics().kinematics();
+    std::fill(applied_.begin(), applied_.end(), SpatialVector<double>{});
+    if (moved_.external != nullptr)
+      add_external_forces(*moved_.external, moved_.time[at(row)], mechanism, kinematics, applied_.data());
+    if (moved_.passive) system_.passive().add_to_links(mechanism, kinematics, q_.data(), evaluator_.qdot(), applied_);
+    for (Eigen::Index m = 0; m < moved_.tendon_force.cols(); ++m)
+      system_.paths().add_tension(kinematics, q_.data(), static_cast<int>(m), moved_.tendon_force(row, m), paths_,
+                                  applied_);
+  }
+
+  const MusculoskeletalSystem& system_;
+  const MovedModel& moved_;
+  SystemEvaluator<double> evaluator_;
+  PathWorkspace<double> paths_;
+  std::vector<SpatialVector<double>> applied_;
+  std::vector<double> tau_, z_, zdot_, zddot_;
+  Eigen::VectorXd q_;
+};
+
+Eigen::Matrix3d axes_of(const Joint& joint, const Mechanism& mechanism, const Kinematics<double>& kinematics,
+                        ReactionFrame frame) {
+  switch (frame) {
+    case ReactionFrame::kGround:
+      break;
+    case ReactionFrame::kParent:
+      return body_pose(mechanism, kinematics, joint.parent).rotation * joint.parent_frame.rotation;
+    case ReactionFrame::kChild:
+      return body_pose(mechanism, kinematics, joint.child).rotation * joint.child_frame.rotation;
+  }
+  return Eigen::Matrix3d::Identity();
+}
+
+}  // namespace
+
+JointReactions joint_reactions(const MusculoskeletalSystem& system, const MovedModel& moved, ReactionFrame frame) {
+  const Model& model = system.model();
+  const Mechanism& mechanism = system.mechanism();
+  JointReactions reactions;
+  for (std::size_t j = 0; j < model.joints.size(); ++j)
+    if (!model.joints[j].coordinates.empty()) reactions.joints.push_back(static_cast<int>(j));
+  const auto rows = moved.q.rows(), columns = 3 * signed_index(reactions.joints.size());
+  reactions.force.setZero(rows, columns);
+  reactions.moment.setZero(rows, columns);
+  ReactionSolver solver(system, moved);
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    solver.solve(row);
+    const Kinematics<double>& kinematics = solver.dynamics().kinematics();
+    for (std::size_t k = 0; k < reactions.joints.size(); ++k) {
+      const Joint& joint = model.joints[at(reactions.joints[k])];
+      const SpatialVector<double>& wrench = solver.dynamics().joint_force(mechanism.body(joint.child).link);
+      const Eigen::Vector3d origin = body_pose(mechanism, kinematics, joint.child) * joint.child_frame.translation;
+      const Eigen::Matrix3d axes = axes_of(joint, mechanism, kinematics, frame);
+      const Eigen::Index column = 3 * signed_index(k);
+      reactions.force.row(row).segment(column, 3) = axes.transpose() * wrench.linear;
+      reactions.moment.row(row).segment(column, 3) = axes.transpose() * (wrench.angular - origin.cross(wrench.linear));
+    }
+  }
+  return reactions;
+}
+
+}  // namespace veridyn::muscle
