@@ -1,7 +1,6 @@
 // veridyn camera calibrate|track|fuse: where a car is, from above.
 #include <fmt/format.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "apps/veridyn/camera_report.hpp"
+#include "apps/veridyn/camera_track.hpp"
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/output_folder.hpp"
 #include "apps/veridyn/version.hpp"
@@ -16,14 +16,9 @@
 #include "veridyn/camera/calibration/calibration_file.hpp"
 #include "veridyn/camera/fusion/fused_drive.hpp"
 #include "veridyn/camera/tracking/pose_tables.hpp"
-#include "veridyn/camera/tracking/silhouette.hpp"
-#include "veridyn/camera/tracking/video_frames.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/study.hpp"
-#include "veridyn/live/camera/pose_packet.hpp"
-#include "veridyn/live/camera/pose_server.hpp"
-#include "veridyn/live/rig/live_study.hpp"
 #include "veridyn/report/document/html.hpp"
 
 namespace veridyn::app {
@@ -100,84 +95,6 @@ int calibrate(const Arguments& arguments) {
   return kDone;
 }
 
-/// Sends the poses of single frames over TCP, each when the frame would have come from a camera.
-class PoseSender {
- public:
-  /// @param address empty: to nobody
-  explicit PoseSender(const std::string& address) : start_(clock_.now()) {
-    if (!address.empty()) server_.emplace(live::parse_address(address, "--serve"), "--serve");
-  }
-  void send(const TrackedPose& pose) {
-    if (!server_) return;
-    const live::Nanoseconds stamp = start_ + live::nanoseconds(pose.time);
-    clock_.sleep_until(stamp);
-    ++sequence_;
-    if (!pose.measured) return;
-    const live::PosePacket packet = live::encode({.sequence = sequence_,
-                                                  .stamp = stamp,
-                                                  .pose = pose.measured->pose,
-                                                  .covariance = pose.measured->covariance()});
-    server_->send({packet.data(), packet.size()});
-  }
-
- private:
-  live::RealClock clock_;
-  live::Nanoseconds start_;
-  std::optional<live::PoseServer> server_;
-  std::uint32_t sequence_ = 0;
-};
-
-int track_video(const Arguments& arguments) {
-  const CommonOptions& common = arguments.common;
-  OutputFolder folder(common.out);
-  const Study options = options_of(arguments);
-  const TrackerOptions tracker_options = TrackerOptions::read(options.root().table_or_empty("tracker"));
-  const SilhouetteOptions silhouette_options = SilhouetteOptions::read(options.root().table_or_empty("silhouette"));
-  options.root().finish();
-  const bool by_silhouette = arguments.text("--method") == "silhouette";
-  const std::filesystem::path video = arguments.text("VIDEO"), calibration = arguments.text("--calibration");
-  const Calibration map = read_calibration(calibration);
-  CarTracker tracker(map, tracker_options);
-  SilhouetteFinder silhouettes(silhouette_options);
-  // The library behind OpenCV writes lines of its own about files that are no video; -8 is its "quiet".
-  ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
-  VideoFrames frames(video);
-  TerminalProgress progress = progress_of(common);
-  progress.stage("following the car");
-  std::vector<TrackedPose> poses;
-  std::size_t seen = 0, lost = 0;
-  PoseSender sender(arguments.text("--serve"));
-  while (const auto frame = frames.next()) {
-    stop_if_interrupted(arguments);
-    const GreyView view = frame->image.view();
-    poses.push_back(by_silhouette ? tracker.add(frame->time, silhouettes.find(view, map))
-                                  : tracker.add(frame->time, view));
-    seen += poses.back().status == TrackStatus::kMeasured ? 1 : 0;
-    lost += poses.back().status == TrackStatus::kLost ? 1 : 0;
-    sender.send(poses.back());
-  }
-  if (seen == 0)
-    throw InputError(
-        video.string(),
-        fmt::format("the car was recognised in none of {} frames: {}, and is the calibration of this camera?",
-                    poses.size(),
-                    by_silhouette ? "is the first frame empty, is the car as large as silhouette.length and "
-                                    "silhouette.width say"
-                                  : "are the markers where tracker.markers_x and tracker.markers_y say"));
-  folder.write("poses.csv", poses_csv(poses));
-  folder.write("measured_poses.csv", measured_poses_csv(poses));
-  folder.publish(record_of("camera track", options, 0, {video, calibration}), common,
-                 Summary::object({{"folder", folder.path().string()},
-                                  {"frames", poses.size()},
-                                  {"measured", seen},
-                                  {"lost", lost},
-                                  {"variance_factor", tracker.variance_factor()}}));
-  print_line(common, fmt::format("{} frames: the car was recognised in {}, predicted in {}, lost in {}", poses.size(),
-                                 seen, poses.size() - seen - lost, lost));
-  print_line(common, fmt::format("wrote poses.csv, measured_poses.csv in {}", folder.path().string()));
-  return kDone;
-}
-
 int fuse_drive(const Arguments& arguments) {
   const CommonOptions& common = arguments.common;
   OutputFolder folder(common.out);
@@ -222,53 +139,36 @@ int fuse_drive(const Arguments& arguments) {
 }  // namespace
 
 Command camera_command() {
-  return {
-      .name = "camera",
-      .summary = "where a car is on its track, by a camera above it",
-      .commands = {
-          {.name = "calibrate",
-           .summary = "the map from track to image: calibration.toml, residuals and a report",
-           .arguments = {{.name = "POINTS",
-                          .help = "table of points: world_x, world_y (of the track), image_x, image_y (pixels)",
-                          .type = "FILE",
-                          .required = true},
-                         {.name = "--distortion",
-                          .help = "what of the lens is fitted",
-                          .value = "auto",
-                          .choices = {"auto", "none", "radial"}}},
-           .default_out = "out/camera",
-           .example = "veridyn camera calibrate points.csv --out camera",
-           .run = calibrate},
-          {.name = "track",
-           .summary = "poses of a car in a video, by bright markers or by its silhouette",
-           .arguments =
-               {{.name = "VIDEO", .help = "video file", .type = "FILE", .required = true},
-                {.name = "--calibration", .help = "calibration.toml of this camera", .type = "FILE", .required = true},
-                {.name = "--method",
-                 .help = "bright markers, or what differs from the first frame, in which the track is empty",
-                 .value = "markers",
-                 .choices = {"markers", "silhouette"}},
-                {.name = "--serve",
-                 .help = "send each pose over TCP to whoever connects there, at the video's own pace",
-                 .value = std::string(""),
-                 .type = "ADDRESS"}},
-           .default_out = "out/camera_track",
-           .example = "veridyn camera track drive.avi --calibration camera/calibration.toml --set "
-                      "tracker.markers_x=[0.1,-0.08,-0.06] --set tracker.markers_y=[0,0.05,-0.04]",
-           .run = track_video},
-          {.name = "fuse",
-           .summary = "inclination and acceleration separately, from inertial sensors and the camera's poses",
-           .arguments = {{.name = "INERTIAL",
-                          .help = "table: time, rate_x, rate_y, rate_z, force_x, force_y, force_z",
-                          .type = "FILE",
-                          .required = true},
-                         {.name = "--poses",
-                          .help = "measured_poses.csv of `veridyn camera track`",
-                          .type = "FILE",
-                          .required = true}},
-           .default_out = "out/camera_fuse",
-           .example = "veridyn camera fuse imu.csv --poses out/camera_track/measured_poses.csv",
-           .run = fuse_drive}}};
+  return {.name = "camera",
+          .summary = "where a car is on its track, by a camera above it",
+          .commands = {
+              {.name = "calibrate",
+               .summary = "the map from track to image: calibration.toml, residuals and a report",
+               .arguments = {{.name = "POINTS",
+                              .help = "table of points: world_x, world_y (of the track), image_x, image_y (pixels)",
+                              .type = "FILE",
+                              .required = true},
+                             {.name = "--distortion",
+                              .help = "what of the lens is fitted",
+                              .value = "auto",
+                              .choices = {"auto", "none", "radial"}}},
+               .default_out = "out/camera",
+               .example = "veridyn camera calibrate points.csv --out camera",
+               .run = calibrate},
+              camera_track_command(),
+              {.name = "fuse",
+               .summary = "inclination and acceleration separately, from inertial sensors and the camera's poses",
+               .arguments = {{.name = "INERTIAL",
+                              .help = "table: time, rate_x, rate_y, rate_z, force_x, force_y, force_z",
+                              .type = "FILE",
+                              .required = true},
+                             {.name = "--poses",
+                              .help = "measured_poses.csv of `veridyn camera track`",
+                              .type = "FILE",
+                              .required = true}},
+               .default_out = "out/camera_fuse",
+               .example = "veridyn camera fuse imu.csv --poses out/camera_track/measured_poses.csv",
+               .run = fuse_drive}}};
 }
 
 }  // namespace veridyn::app

@@ -14,6 +14,7 @@
 #include "tests/apps/program.hpp"
 #include "tests/camera/fusion/simulated_sensors.hpp"
 #include "tests/camera/rendered_drive.hpp"
+#include "tests/support/sanitized.hpp"
 #include "veridyn/camera/tracking/pose_tables.hpp"
 #include "veridyn/camera/tracking/video_frames.hpp"
 #include "veridyn/io/tables/table.hpp"
@@ -89,6 +90,105 @@ TEST_F(CameraProgram, CalibratesAndFollowsACarInAVideo) {
   expect_refusal("camera track " + video + calibration + out() + " --set tracker.markers_x=[0.3,-0.3,0.1] " +
                      "--set tracker.markers_y=[0,0,0.2]",
                  "the car was recognised in none of 30 frames");
+}
+
+/// A program that follows a car before a camera: half the size of full HD, 45 pictures in a second and a half.
+class CameraDeviceProgram : public CameraProgram {
+ protected:
+  static constexpr int kWidth = 960, kHeight = 540, kPictures = 45;
+  static constexpr double kRate = 30.0;
+
+  void SetUp() override {
+    if (test::kSanitized) GTEST_SKIP() << "the sanitizer's library has to be loaded first";
+    const camera::TrackCamera truth = camera::testing::half_size_camera();
+    const std::string points = file("points.csv", camera::to_csv(camera::testing::grid_points(truth, 0.2, 0.15, 1)));
+    ASSERT_EQ(run("camera calibrate " + points + " --out " + (folder_ / "camera").string()).exit_code, 0);
+    camera::OverheadScene scene = camera::testing::disturbed_scene(truth, kWidth, kHeight);
+    scene.lights.erase(scene.lights.begin() + 1);
+    camera::OverheadRenderer renderer(scene, 1);
+    std::string pictures;
+    for (int k = 0; k < kPictures; ++k) {
+      const camera::GreyImage image = renderer.render(k / kRate);
+      pictures.append(reinterpret_cast<const char*>(image.pixels.data()), image.pixels.size());
+    }
+    plug_in_camera(kDevice, file("pictures.raw", pictures), kWidth, kHeight, kRate);
+  }
+  [[nodiscard]] std::string track(const std::string& device = kDevice) const {
+    return "camera track " + device + " --calibration " + (folder_ / "camera/calibration.toml").string() + " --out " +
+           (folder_ / "out").string();
+  }
+  /// Places of single pictures; the first one that the camera gave may be any.
+  void expect_poses(std::size_t least) const {
+    const auto poses = camera::read_poses(in_out("measured_poses.csv"));
+    ASSERT_GE(poses.size(), least);
+    double best = kInfinity;
+    for (int first = 0; first < kPictures; ++first) {
+      double worst = 0.0;
+      for (const camera::TimedPose& p : poses)
+        worst = std::max(worst, (p.pose - camera::testing::figure_of_eight(first / kRate + p.time)).head<2>().norm());
+      best = std::min(best, worst);
+    }
+    EXPECT_LT(best, 2e-3) << "places and the driver's stamps go together";
+  }
+
+  // A character device that nothing else here opens.
+  static constexpr const char* kDevice = "/dev/full";
+};
+
+TEST_F(CameraDeviceProgram, FollowsACarForAsLongAsItIsTold) {
+  const Outcome tracked = run(track() + " --seconds 0.8");
+  ASSERT_EQ(tracked.exit_code, 0) << tracked.text;
+  EXPECT_THAT(tracked.text, HasSubstr("s of the camera, 960 x 540 px at 30 Hz; following a picture took"));
+  EXPECT_THAT(tracked.text, testing::Not(HasSubstr("another clock")));
+  expect_poses(5);
+}
+
+TEST_F(CameraDeviceProgram, KeepsWhatItHasWhereTheCameraIsUnplugged) {
+  const Outcome tracked = run(track());
+  ASSERT_EQ(tracked.exit_code, 0) << tracked.text;
+  EXPECT_THAT(tracked.text, HasSubstr("warning: /dev/full: gives no more pictures; is it still plugged in?"));
+  expect_poses(10);
+}
+
+TEST_F(CameraDeviceProgram, EndsWithCtrlCAndKeepsWhatItHas) {
+  const Outcome tracked = run_interrupted_after("Ctrl-C ends it", 1, track(), folder_);
+  // Unless a busy machine took longer for the first picture: then there is nothing, which it says.
+  if (tracked.text.find("recognised in none of 0 frames") != std::string::npos) GTEST_SKIP() << tracked.text;
+  EXPECT_EQ(tracked.exit_code, 0) << tracked.text;
+  EXPECT_THAT(tracked.text, HasSubstr("s of the camera"));
+}
+
+TEST_F(CameraDeviceProgram, SendsPosesWithTheDriversStamps) {
+  const auto port = static_cast<std::uint16_t>(42000 + ::getpid() % 2000);
+  live::PoseClient client({0x7f000001, port});
+  Process served({"camera", "track", kDevice, "--calibration", (folder_ / "camera/calibration.toml").string(),
+                  "--serve", fmt::format("127.0.0.1:{}", port), "--out", (folder_ / "out").string()},
+                 folder_ / "served.txt");
+  live::RealClock clock;
+  std::size_t received = 0;
+  for (const live::Nanoseconds end = clock.now() + 5 * live::kSecond; clock.now() < end && received < 5;) {
+    while (const auto d = client.next(clock.now())) {
+      const live::CameraPose pose = live::decode_pose(d->bytes).value();
+      EXPECT_LT(pose.stamp, clock.now());
+      EXPECT_GT(pose.stamp, clock.now() - live::kSecond);
+      ++received;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_EQ(served.wait(), 0) << served.said();
+  EXPECT_GE(received, 5U);
+}
+
+TEST_F(CameraDeviceProgram, SaysWhatACameraCannotDoInOneLine) {
+  expect_refusal(track() + " --quiet --set device.width=640 --set device.height=480",
+                 "/dev/full: gives 960 x 540 px where 640 x 480 are asked for (device.width, device.height)\n");
+  expect_refusal(track() + " --quiet --set device.rate=60",
+                 "/dev/full: gives 30 pictures a second where 60 are asked for");
+  expect_refusal(track() + " --quiet --set device.width=640", "device.width: needs the other one");
+  expect_refusal(track() + " --quiet --set device.format=JPEGS", "must be four letters");
+  expect_refusal(track("/dev/null") + " --quiet", "/dev/null: is no camera\n");
+  expect_refusal(track("/dev/video_none") + " --quiet",
+                 "/dev/video_none: there is no such device; is it plugged in?\n");
 }
 
 TEST_F(CameraProgram, SaysInOneLineThatAVideoChangesItsSize) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 
 namespace veridyn {
 
@@ -30,6 +31,17 @@ Outcome run_in_shell(const std::string& before, const std::string& arguments) {
 
 Outcome run_under(const std::string& before, const std::string& arguments) {
   return shell(before + " " + std::string(VERIDYN_PROGRAM) + " " + arguments + " 2>&1");
+}
+
+void plug_in_camera(const std::string& device, const std::filesystem::path& pictures, int width, int height,
+                    double rate_Hz) {
+  const auto set = [](const char* name, const std::string& value) { ::setenv(name, value.c_str(), 1); };
+  set("LD_PRELOAD", VERIDYN_FAKE_CAMERA);
+  set("VERIDYN_FAKE_CAMERA_DEVICE", device);
+  set("VERIDYN_FAKE_CAMERA_PICTURES", pictures.string());
+  set("VERIDYN_FAKE_CAMERA_WIDTH", std::to_string(width));
+  set("VERIDYN_FAKE_CAMERA_HEIGHT", std::to_string(height));
+  set("VERIDYN_FAKE_CAMERA_RATE", std::to_string(rate_Hz));
 }
 
 Outcome run_interrupted(const std::string& arguments, const std::filesystem::path& scratch) {

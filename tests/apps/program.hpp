@@ -36,6 +36,11 @@ struct Outcome {
 [[nodiscard]] Outcome run_interrupted_after(const std::string& words, int signals, const std::string& arguments,
                                             const std::filesystem::path& scratch);
 
+/// Lets programs that are run from here on find a camera at `device`, an existing character device, which shows these
+/// pictures and is unplugged after the last one (tests/support/fake_camera).
+void plug_in_camera(const std::string& device, const std::filesystem::path& pictures, int width, int height,
+                    double rate_Hz);
+
 /// A scratch folder for each test, and what every refusal must look like.
 class ProgramTest : public testing::Test {
  protected:

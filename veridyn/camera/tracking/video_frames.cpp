@@ -66,12 +66,7 @@ std::optional<VideoFrame> VideoFrames::next() {
   if (decoded.bits != 8) throw InputError(r.name, "its pixels are not of 8 bits");
   VideoFrame frame;
   frame.time = static_cast<double>(r.read) / r.rate;
-  frame.image.width = r.width;
-  frame.image.height = r.height;
-  for (int y = 0; y < r.height; ++y) {
-    const std::uint8_t* row = decoded.pixels + static_cast<std::size_t>(y) * decoded.row_bytes;
-    frame.image.pixels.insert(frame.image.pixels.end(), row, row + r.width);
-  }
+  frame.image = grey_image(decoded);
   ++r.read;
   return frame;
 }

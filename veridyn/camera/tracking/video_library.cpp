@@ -27,6 +27,16 @@ VideoLibrary load_video_library() {
 
 }  // namespace
 
+GreyImage grey_image(const DecodedFrame& frame) {
+  GreyImage image{.width = frame.width, .height = frame.height, .pixels = {}};
+  image.pixels.reserve(static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height));
+  for (int y = 0; y < frame.height; ++y) {
+    const std::uint8_t* row = frame.pixels + static_cast<std::size_t>(y) * frame.row_bytes;
+    image.pixels.insert(image.pixels.end(), row, row + frame.width);
+  }
+  return image;
+}
+
 const VideoLibrary& video_library() {
   static const VideoLibrary library = load_video_library();
   return library;

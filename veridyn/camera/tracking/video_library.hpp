@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <string>
 
+#include "veridyn/camera/tracking/grey_image.hpp"
+
 namespace veridyn::camera {
 
 /// What a video says of itself.
@@ -18,8 +20,12 @@ struct DecodedFrame {
   const std::uint8_t* pixels = nullptr;
   std::size_t row_bytes = 0;
   int width = 0, height = 0;
-  int bits = 0;  ///< of a pixel
+  int bits = 0;        ///< of a pixel
+  double stamp = 0.0;  ///< of a camera: when its driver had the picture [s]; 0: it does not say
 };
+
+/// A copy of a frame of 8 bits that stays.
+[[nodiscard]] GreyImage grey_image(const DecodedFrame& frame);
 
 /// How reading a frame ended.
 enum class VideoRead {
@@ -34,6 +40,10 @@ enum class VideoRead {
 struct VideoLibrary {
   /// Null where the file is no video that can be read; `error` says what OpenCV said, if anything.
   void* (*open_reader)(const char* path, VideoProperties& properties, std::string& error) = nullptr;
+  /// A camera of Video4Linux. Size and rate of `properties` are asked for where they are above 0; what the camera gives
+  /// is written there. `format`: four letters, or empty. Null where it cannot be opened. Closed by `close_reader`.
+  void* (*open_device)(const char* device, const char* format, VideoProperties& properties,
+                       std::string& error) = nullptr;
   VideoRead (*read)(void* reader, DecodedFrame& frame, std::string& error) = nullptr;
   void (*close_reader)(void* reader) = nullptr;
   /// Of a Motion JPEG in AVI. Null where it cannot be written.

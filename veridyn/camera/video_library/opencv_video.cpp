@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 #include <optional>
+#include <string_view>
 
 #include "veridyn/camera/tracking/video_library.hpp"
 
@@ -19,6 +20,7 @@ struct Reader {
   // looked at, too.
   cv::VideoCapture pictures;
   cv::Mat picture;
+  bool is_device = false;
 };
 
 /// Size that the head of a JPEG says; nothing where it is none.
@@ -60,6 +62,34 @@ void* open_reader(const char* path, VideoProperties& properties, std::string& er
   return reader.release();
 }
 
+void* open_device(const char* device, const char* format, VideoProperties& properties, std::string& error) {
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  auto reader = std::make_unique<Reader>();
+  reader->is_device = true;
+  try {
+    cv::VideoCapture& camera = reader->capture;
+    if (!camera.open(device, cv::CAP_V4L2)) return nullptr;
+    // The format first: size and rate that a camera can do depend on it.
+    if (const std::string_view f = format; f.size() == 4)
+      camera.set(cv::CAP_PROP_FOURCC, cv::VideoWriter::fourcc(f[0], f[1], f[2], f[3]));
+    if (properties.width > 0.0) {
+      camera.set(cv::CAP_PROP_FRAME_WIDTH, properties.width);
+      camera.set(cv::CAP_PROP_FRAME_HEIGHT, properties.height);
+    }
+    if (properties.rate_Hz > 0.0) camera.set(cv::CAP_PROP_FPS, properties.rate_Hz);
+    // Of pictures that nobody took in time the newest counts: those before would only be late.
+    camera.set(cv::CAP_PROP_BUFFERSIZE, 2);
+    properties = {.width = camera.get(cv::CAP_PROP_FRAME_WIDTH),
+                  .height = camera.get(cv::CAP_PROP_FRAME_HEIGHT),
+                  .rate_Hz = camera.get(cv::CAP_PROP_FPS),
+                  .frames = 0.0};
+  } catch (const cv::Exception& exception) {
+    error = exception.err;
+    return nullptr;
+  }
+  return reader.release();
+}
+
 VideoRead read(void* of, DecodedFrame& frame, std::string& error) {
   Reader& r = *static_cast<Reader*>(of);
   try {
@@ -79,7 +109,8 @@ VideoRead read(void* of, DecodedFrame& frame, std::string& error) {
            .row_bytes = r.grey.step[0],
            .width = r.grey.cols,
            .height = r.grey.rows,
-           .bits = static_cast<int>(8 * r.grey.elemSize1())};
+           .bits = static_cast<int>(8 * r.grey.elemSize1()),
+           .stamp = r.is_device ? 1e-3 * r.capture.get(cv::CAP_PROP_POS_MSEC) : 0.0};
   if (const std::optional<cv::Size> size = r.pictures.isOpened() ? jpeg_size(r.picture) : std::nullopt) {
     frame.width = size->width;
     frame.height = size->height;
@@ -127,6 +158,7 @@ void close_writer(void* writer) { delete static_cast<Writer*>(writer); }
 extern "C" __attribute__((visibility("default"))) void veridyn_video_library(veridyn::camera::VideoLibrary& library) {
   using namespace veridyn::camera;
   library = {.open_reader = open_reader,
+             .open_device = open_device,
              .read = read,
              .close_reader = close_reader,
              .open_writer = open_writer,
