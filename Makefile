@@ -5,7 +5,7 @@ JOBS   ?= $(shell nproc)
 SHELL  := /bin/bash
 space  := $(subst ,, )
 
-.PHONY: help setup build demo test docs format format-check tidy asan tsan bench fuzz soak install clean
+.PHONY: help setup build demo test long docs format format-check tidy asan tsan bench fuzz soak install clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1|/' | column -t -s '|'
@@ -23,11 +23,20 @@ demo: build ## a complete run on a built-in aircraft; report in out/demo
 # So many tests that wait (tests/waiting_tests.txt) run next to JOBS tests that compute.
 WAITING ?= 2
 
-test: setup format-check ## build and run the whole test suite
+test: setup format-check ## build and run the test suite
+	$(build_with_tests)
+	$(run_tests) -LE 'soak|long'
+
+long: setup ## tests of accuracy and of coverage over many recordings (label long); CI runs them after `make test`
+	$(build_with_tests)
+	$(run_tests) -L long
+
+define build_with_tests
 	cmake --preset release -DVERIDYN_TESTS=ON --log-level=WARNING
 	cmake --build $(BUILD) -j $(JOBS)
 	@echo '{"version": {"major": 1, "minor": 0}, "local": [{"cores": [{"id": "all", "slots": $(JOBS)}], "waiting": [{"id": "all", "slots": $(WAITING)}]}]}' >$(BUILD)/test_resources.json
-	ctest --test-dir $(BUILD) --output-on-failure -j $$(($(JOBS) + $(WAITING))) --resource-spec-file test_resources.json -LE soak
+endef
+run_tests = ctest --test-dir $(BUILD) --output-on-failure -j $$(($(JOBS) + $(WAITING))) --resource-spec-file test_resources.json
 
 docs: setup ## API reference from the headers: build/docs/html/index.html
 	@node tools/docs.mjs build/docs
