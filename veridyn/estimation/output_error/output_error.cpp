@@ -11,6 +11,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/core/option_check.hpp"
 #include "veridyn/estimation/output_error/output_error_problem.hpp"
 #include "veridyn/estimation/output_error/residual_spectrum.hpp"
 #include "veridyn/estimation/output_error/solver_views.hpp"
@@ -403,9 +404,7 @@ std::string_view to_string(OutputErrorTermination termination) {
 const Parameter* OutputErrorEstimate::find(std::string_view name) const { return find_parameter(parameters, name); }
 
 void OutputErrorOptions::validate(const ParametricModel& model) const {
-  const auto require = [](bool holds, const char* what, double value, const char* rule) {
-    if (!holds) throw InputError(fmt::format("output_error.{}", what), fmt::format("is {}; must be {}", value, rule));
-  };
+  const OptionCheck require("output_error");
   require(significance > 0.0 && significance < 1.0, "significance", significance, "in (0, 1)");
   require(max_relaxations >= 1, "max_relaxations", max_relaxations, ">= 1");
   require(max_steps >= 0, "max_steps", max_steps, ">= 0");

@@ -1,15 +1,13 @@
 #include "veridyn/estimation/recursive/change_detection.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
 #include <vector>
 
-#include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/core/option_check.hpp"
 #include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -109,9 +107,9 @@ double spread_cusum_run_length(double reference, double threshold, double sd) {
 }
 
 void ChangeDetectionOptions::validate() const {
-  const auto check = [](bool good, const char* name, double value, const char* rule) {
-    if (!good || !std::isfinite(value))
-      throw InputError(fmt::format("change_detection.{}", name), fmt::format("is {}; must be {}", value, rule));
+  const OptionCheck require("change_detection");
+  const auto check = [&](bool good, const char* name, double value, const char* rule) {
+    require(good && std::isfinite(value), name, value, rule);
   };
   check(rate_Hz > 0.0, "rate_Hz", rate_Hz, "> 0");
   check(block_s > 0.0 && block_s * rate_Hz < 1e6, "block_s", block_s, "> 0 and less than a million samples");

@@ -1,20 +1,16 @@
 #include "veridyn/estimation/recursive/forgetting.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/error.hpp"
+#include "veridyn/core/option_check.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::estimation {
 
 void ForgettingOptions::validate() const {
-  const auto check = [](bool good, const char* name, double value, const char* rule) {
-    if (!good) throw InputError(fmt::format("forgetting.{}", name), fmt::format("is {}; must be {}", value, rule));
-  };
+  const OptionCheck check("forgetting");
   check(lambda > 0.0 && lambda <= 1.0, "lambda", lambda, "in (0, 1]");
   check(lambda_min > 0.0 && lambda_min <= lambda, "lambda_min", lambda_min, "in (0, lambda]");
   check(K_a >= 2.0 && std::isfinite(K_a), "K_a", K_a, "at least 2");

@@ -1,11 +1,9 @@
 #include "veridyn/estimation/recursive/parameter_watch.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "veridyn/core/error.hpp"
+#include "veridyn/core/option_check.hpp"
 
 namespace veridyn::estimation {
 namespace {
@@ -22,9 +20,9 @@ constexpr double kLargest = 3.0;
 }  // namespace
 
 void ParameterWatchOptions::validate() const {
-  const auto check = [](bool good, const char* name, double value, const char* rule) {
-    if (!good || !std::isfinite(value))
-      throw InputError(fmt::format("parameter_watch.{}", name), fmt::format("is {}; must be {}", value, rule));
+  const OptionCheck require("parameter_watch");
+  const auto check = [&](bool good, const char* name, double value, const char* rule) {
+    require(good && std::isfinite(value), name, value, rule);
   };
   check(share >= 0.0, "share", share, ">= 0");
   check(block_s > 0.0, "block_s", block_s, "> 0");

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/error.hpp"
+#include "veridyn/core/option_check.hpp"
 #include "veridyn/estimation/regression/augmented_qr.hpp"
 #include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 #include "veridyn/numerics/linear_algebra/products.hpp"
@@ -301,10 +301,7 @@ std::string_view to_string(StructureAction action) {
 }
 
 void StructureOptions::validate(Index parameters) const {
-  const auto require = [](bool holds, const char* what, double value, const std::string& rule) {
-    if (!holds)
-      throw InputError(fmt::format("structure_search.{}", what), fmt::format("is {}; must be {}", value, rule));
-  };
+  const OptionCheck require("structure_search");
   require(f_enter > 0.0, "f_enter", f_enter, "> 0");
   require(f_remove >= 0.0 && f_remove <= f_enter, "f_remove", f_remove, fmt::format("from 0 to f_enter = {}", f_enter));
   require(min_r2_change >= 0.0 && min_r2_change < 1.0, "min_r2_change", min_r2_change, "in [0, 1)");
