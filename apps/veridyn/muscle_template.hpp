@@ -17,6 +17,7 @@ model = @MODEL@
 # paths = "exact"                # "fitted": polynomials, faster; "opensim": OpenSim's wrapping, its jumps included
 # locked = ["shoulder_flexion"]  # coordinates held where they start
 # unlocked = []                  # coordinates that the model locks and that move all the same
+# without_contact = false        # leave the model's contacts out: external loads have their forces
 # without_unsupported = false    # go on without forces and constraints of the model that are not understood
 
 # Parameters other than the model's: max_isometric_force, optimal_fiber_length, tendon_slack_length,
@@ -68,6 +69,20 @@ default = 0.05
 # start = 0.05                   # s
 # duration = 1                   # s
 # shape = "minimum jerk"         # "half sine", "linear"
+
+# external_loads = "grf.xml"     # OpenSim's ExternalLoads: forces of the surroundings during the motion, with their data
+# external_low_pass = "20 Hz"    # of these forces, without delay
+# [[motion.external_load]]       # or load by load
+# body = "foot_r"
+# file = "grf.mot"               # columns ground_force_vx, ... of:
+# force = "ground_force_v"       # N
+# point = "ground_force_p"       # m; the body's origin when left out
+# torque = "ground_torque_"      # N m
+# [motion]
+# joint_reactions = "child"      # what joints transmit, in axes of "child", "parent" or "ground"
+
+[motion.reserves]                # N m or N, of single coordinates instead of reserve_force
+# pelvis_ty = 0
 
 [motion.control]                 # computed muscle control
 # window = "10 ms"               # controls are held so long

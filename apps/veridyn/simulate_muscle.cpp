@@ -68,6 +68,12 @@ Summary summary_of(const std::filesystem::path& folder, const MuscleStudy& study
     s["muscles"][model.muscles[m].name()] = Summary::object(
         {{"peak_force_N", t.tendon_force.col(i).maxCoeff()}, {"peak_activation", t.activation.col(i).maxCoeff()}});
   }
+  if (const auto& fit = result.external_fit; fit && fit->coordinate >= 0)
+    s["external_loads"] = Summary::object({{"coordinate", model.coordinates[at(fit->coordinate)].name},
+                                           {"weight_N", fit->weight},
+                                           {"residual_without_N", fit->without},
+                                           {"residual_with_N", fit->with},
+                                           {"factor", fit->factor}});
   s["events"] = Summary::array();
   for (const MuscleEvent& event : t.events) {
     s["events"].push_back(Summary::object({{"time_s", event.time},

@@ -119,6 +119,12 @@ std::vector<Fact> facts(const Shown& shown) {
     list.push_back({"Load", fmt::format("{:g} kg on {} at ({:g}, {:g}, {:g}) m", load.mass, load.body,
                                         load.location.x(), load.location.y(), load.location.z())});
   }
+  if (study.motion.external) {
+    std::vector<std::string> loads;
+    for (const ExternalLoad& load : study.motion.external->loads)
+      loads.push_back(fmt::format("{} on {}", load.name, shown.model.bodies[at(load.body)].name));
+    list.push_back({"External loads", list_text(loads)});
+  }
   const MuscleTrajectory& t = shown.result.trajectory;
   if (t.steps > 0) {
     list.push_back({"Integration",
@@ -188,6 +194,11 @@ Verdict verdict(const Shown& shown) {
               : fmt::format("{} muscles follow the desired motion of {:g} s with help of the reserves.", muscles, span);
       break;
   }
+  if (const auto& fit = result.external_fit; fit && fit->coordinate >= 0)
+    v.lines.push_back(fmt::format(
+        "With the external loads {} lacks {:.3g} N ({:.2g} % of the weight), without them {:.3g} N (root mean "
+        "squares).",
+        shown.model.coordinates[at(fit->coordinate)].name, fit->with, 100.0 * fit->with / fit->weight, fit->without));
   if (!t.events.empty())
     v.lines.push_back(
         fmt::format("{} times a tendon went slack or a fibre reached its least length.", t.events.size()));
@@ -224,8 +235,8 @@ TimeSeries force_figure(const Shown& shown) {
   TimeSeries figure{.title = "Generalised forces", .samples = t.time};
   const bool required = shown.result.generalized_force.size() > 0, reserve = any(t.reserve);
   figure.caption = required && reserve
-                       ? "Required: by gravity and inertia. Reserve: what the muscles do not give of it."
-                   : required ? "What gravity and inertia require, without regard to constraints."
+                       ? "Required: by gravity and inertia, less external loads. Reserve: what the muscles do not give."
+                   : required ? "What gravity and inertia require less external loads, without regard to constraints."
                               : "What reserve actuators add to the muscles.";
   for (std::size_t c = 0; c < shown.model.coordinates.size() && figure.panels.size() < kMostLines; ++c) {
     const Coordinate& k = shown.model.coordinates[c];
@@ -236,6 +247,48 @@ TimeSeries force_figure(const Shown& shown) {
     if (!panel.lines.empty()) figure.panels.push_back(std::move(panel));
   }
   return figure;
+}
+
+/// Size of the force that each joint transmits, of the largest ones.
+TimeSeries reaction_figure(const Shown& shown) {
+  const JointReactions& reactions = *shown.result.reactions;
+  TimeSeries figure{.title = "Joint reactions over time", .samples = shown.result.trajectory.time};
+  std::vector<std::vector<double>> force(reactions.joints.size());
+  std::vector<double> peak;
+  for (std::size_t k = 0; k < force.size(); ++k) {
+    for (Eigen::Index i = 0; i < reactions.force.rows(); ++i)
+      force[k].push_back(reactions.force.row(i).segment(3 * signed_index(k), 3).norm());
+    peak.push_back(force[k].empty() ? 0.0 : *std::max_element(force[k].begin(), force[k].end()));
+  }
+  Panel panel{.label = "force", .unit = "N", .lines = {}, .height = 170};
+  for (const std::size_t k : largest(peak, kMostLines))
+    panel.lines.push_back({.name = shown.model.joints[at(reactions.joints[k])].name, .y = force[k]});
+  figure.panels.push_back(std::move(panel));
+  return figure;
+}
+
+Table reaction_table_of(const Shown& shown) {
+  const JointReactions& reactions = *shown.result.reactions;
+  double weight = 0.0;
+  for (const Body& body : shown.model.bodies) weight += body.mass * shown.model.gravity.norm();
+  const bool muscles = shown.result.trajectory.tendon_force.size() > 0;
+  Table table{.title = "Joint reactions",
+              .caption = fmt::format("Force and moment on the child body, about the joint{}.",
+                                     muscles ? "" : "; net, without the forces of muscles"),
+              .columns = {{.name = "Joint"},
+                          {.name = "force", .unit = "N", .group = "greatest"},
+                          {.name = "of the weight", .unit = "%", .digits = 3, .group = "greatest"},
+                          {.name = "moment", .unit = "N m", .group = "greatest"}}};
+  for (std::size_t k = 0; k < reactions.joints.size(); ++k) {
+    double force = 0.0, moment = 0.0;
+    for (Eigen::Index i = 0; i < reactions.force.rows(); ++i) {
+      force = std::max(force, reactions.force.row(i).segment(3 * signed_index(k), 3).norm());
+      moment = std::max(moment, reactions.moment.row(i).segment(3 * signed_index(k), 3).norm());
+    }
+    table.rows.push_back({.cells = {text_cell(shown.model.joints[at(reactions.joints[k])].name), number_cell(force),
+                                    number_cell(weight > 0.0 ? 100.0 * force / weight : 0.0), number_cell(moment)}});
+  }
+  return table;
 }
 
 TimeSeries muscle_figure(const Shown& shown) {
@@ -385,6 +438,10 @@ Document muscle_report(const MuscleStudy& study, const MuscleResult& result, con
   if (!shown.coordinates.empty()) motion.blocks.emplace_back(motion_figure(shown));
   if (result.generalized_force.size() > 0 || any(result.trajectory.reserve))
     motion.blocks.emplace_back(force_figure(shown));
+  if (result.reactions) {
+    motion.blocks.emplace_back(reaction_figure(shown));
+    motion.blocks.emplace_back(reaction_table_of(shown));
+  }
   document.sections.push_back(std::move(motion));
   if (!shown.model.muscles.empty()) {
     Section muscles{.title = "Muscles", .id = "muscles"};
