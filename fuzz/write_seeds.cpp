@@ -4,6 +4,7 @@
 #include <string>
 
 #include "tests/support/synthetic_logs.hpp"
+#include "tests/support/tlog_writer.hpp"
 #include "tests/vehicle/tyre/small_tir.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
@@ -24,6 +25,7 @@ int main(int count, char** arguments) {
     write("dataflash", veridyn::testing::small_dataflash());
     write("dataflash_text", veridyn::testing::small_dataflash_text());
     write("ulog", veridyn::testing::small_ulog());
+    write("tlog", veridyn::testing::small_tlog());
     write("csv", veridyn::testing::small_csv());
     write("csv", "# t p (deg/s) V\n0 1 20\n20\t2 21\n40 3 22\n", "blanks");
     write("csv", "Zeit;V;V\ns;km/h;\n0,0;1,5;2\n0,1;2,5;3\n", "decimal_comma");

@@ -80,9 +80,10 @@ std::string small_tlog() {
     log.packet(received, 27, 144,
                pack(boot_us, deci, std::int16_t{0}, std::int16_t{-1000}, std::int16_t{500}, deci, std::int16_t{0},
                     std::int16_t{200}, std::int16_t{0}, std::int16_t{400}));
-    log.packet(received, 33, 104,
-               pack(boot_ms, std::int32_t{473'000'000 + i}, std::int32_t{85'000'000}, std::int32_t{500'000},
-                    std::int32_t{100'000}, deci, std::int16_t{-250}, std::int16_t{30}, std::uint16_t{65535}));
+    log.packet(
+        received, 33, 104,
+        pack(boot_ms, std::int32_t{473'000'000 + i}, std::int32_t{85'000'000}, std::int32_t{500'000},
+             std::int32_t{100'000}, deci, static_cast<std::int16_t>(-250 - i), std::int16_t{30}, std::uint16_t{65535}));
     log.packet(received, 36, 222,
                pack(static_cast<std::uint32_t>(boot_us), std::uint16_t{1500}, static_cast<std::uint16_t>(1500 + 5 * i),
                     std::uint16_t{1700}, std::uint16_t{1500}, std::uint16_t{0}, std::uint16_t{0}, std::uint16_t{0},
@@ -91,7 +92,7 @@ std::string small_tlog() {
     log.packet1(received, 29, 115, pack(boot_ms, 950.5F, 2.5F + x, std::int16_t{1800}));
     if (i % 5 == 0) {
       log.packet(received, 24, 24,
-                 pack(boot_us, std::int32_t{473'000'000}, std::int32_t{85'000'000}, std::int32_t{505'000},
+                 pack(boot_us, std::int32_t{473'000'000}, std::int32_t{85'000'000}, std::int32_t{505'000 + 100 * i},
                       std::uint16_t{80}, std::uint16_t{120}, static_cast<std::uint16_t>(2200 + i),
                       static_cast<std::uint16_t>(9000 + 10 * i), std::uint8_t{3}, std::uint8_t{12}));
       log.packet(received, 30, 39, pack(boot_ms, 9.0F, 9.0F, 9.0F, 0.0F, 0.0F, 0.0F), {1, 154});

@@ -28,7 +28,7 @@ struct ChannelOrigin {
 /// A recording in standard channel names (SI, one frame) and the account of how it was made.
 struct MappedRecording {
   Recording recording;
-  std::string log_kind;  ///< "ArduPilot", "PX4", "standard names", "study"
+  std::string log_kind;  ///< "ArduPilot", "PX4", "MAVLink", "standard names", "study"
   std::vector<ChannelOrigin> origins;
   /// Standard deviation that the calibration of a channel leaves, by channel: an error that all samples share.
   std::vector<std::pair<std::string, double>> calibration_sigma;

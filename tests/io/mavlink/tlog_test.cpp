@@ -35,7 +35,7 @@ TEST(Tlog, ReadsBothVersionsInSiWithUnknownNumbersLeftOut) {
   EXPECT_NEAR(value("GLOBAL_POSITION_INT.vz", 20), 0.3, 1e-12);
   EXPECT_TRUE(std::isnan(value("GLOBAL_POSITION_INT.hdg", 0))) << "65535 says that there is none";
   EXPECT_NEAR(value("GPS_RAW_INT.vel", 2), 22.1, 1e-12);
-  EXPECT_NEAR(value("GPS_RAW_INT.alt", 2), 505.0, 1e-12);
+  EXPECT_NEAR(value("GPS_RAW_INT.alt", 2), 506.0, 1e-12);
   EXPECT_NEAR(value("SCALED_PRESSURE.press_abs", 0), 95050.0, 1e-2) << "a packet of version 1";
   EXPECT_NEAR(value("SCALED_PRESSURE.temperature", 0), 291.15, 1e-9);
   EXPECT_NEAR(value("SERVO_OUTPUT_RAW.servo2_raw", 10), 1550e-6, 1e-12);

@@ -89,10 +89,16 @@ struct ServoPosition {
   std::string source;
 };
 
-std::optional<ServoPosition> servo_position(MapBuilder& builder, int output, bool throttle) {
+/// The channel with the pulses of an output.
+std::string servo_channel(const Recording& log, int output, ServoOutputs outputs) {
+  if (outputs == ServoOutputs::kMavlink) return fmt::format("SERVO_OUTPUT_RAW.servo{}_raw", output);
+  std::string name = fmt::format("RCOU.C{}", output);
+  return log.has(name) ? name : fmt::format("RCOU.Ch{}", output);
+}
+
+std::optional<ServoPosition> servo_position(MapBuilder& builder, int output, bool throttle, ServoOutputs outputs) {
   const Recording& log = builder.log();
-  const std::string name = fmt::format("RCOU.C{}", output);
-  const Channel* raw = builder.alive(log.has(name) ? name : fmt::format("RCOU.Ch{}", output));
+  const Channel* raw = builder.alive(servo_channel(log, output, outputs));
   if (raw == nullptr) return std::nullopt;
   const bool modern = log.parameters.contains(fmt::format("SERVO{}_MIN", output));
   const std::string prefix = fmt::format("{}{}_", modern ? "SERVO" : "RC", output);
@@ -142,16 +148,18 @@ void put_servos(MapBuilder& builder, const std::string& channel,
 }
 
 /// All servos of one function: both ailerons count half each.
-void map_servo(MapBuilder& builder, const std::string& channel, int function, int usual_output, double full_throw) {
+void map_servo(MapBuilder& builder, const std::string& channel, int function, int usual_output, double full_throw,
+               ServoOutputs where) {
   if (builder.mapped(channel)) return;
   std::vector<int> outputs = outputs_with(builder.log(), function);
   // A log that says what its servos do, says that this one is not there.
-  const bool assumed = outputs.empty() && !builder.log().parameters.contains("SERVO1_FUNCTION");
+  const bool assumed =
+      outputs.empty() && where == ServoOutputs::kDataflash && !builder.log().parameters.contains("SERVO1_FUNCTION");
   if (assumed) outputs = {usual_output};
   std::vector<std::pair<ServoPosition, double>> servos;
   std::vector<std::string> names;
   for (const int output : outputs) {
-    auto position = servo_position(builder, output, channel == "throttle");
+    auto position = servo_position(builder, output, channel == "throttle", where);
     if (!position) continue;
     servos.emplace_back(std::move(*position), 1.0);
     names.push_back(fmt::format("SERVO{}_FUNCTION", output));
@@ -174,12 +182,13 @@ struct MixedPair {
   double sign;                    ///< of right - left
 };
 
-void map_pair(MapBuilder& builder, const MixedPair& pair, double common_throw, double differential_throw) {
+void map_pair(MapBuilder& builder, const MixedPair& pair, double common_throw, double differential_throw,
+              ServoOutputs where) {
   const std::vector<int> left = outputs_with(builder.log(), pair.left_function);
   const std::vector<int> right = outputs_with(builder.log(), pair.right_function);
   if (left.empty() && right.empty()) return;
-  const auto first = left.empty() ? std::nullopt : servo_position(builder, left.front(), false);
-  const auto second = right.empty() ? std::nullopt : servo_position(builder, right.front(), false);
+  const auto first = left.empty() ? std::nullopt : servo_position(builder, left.front(), false, where);
+  const auto second = right.empty() ? std::nullopt : servo_position(builder, right.front(), false, where);
   if (!first || !second) {
     builder.note(fmt::format("only one of the {} is recorded, of which both are needed: not used", pair.what));
     return;
@@ -204,26 +213,36 @@ bool is_ardupilot(const Recording& log) {
   return false;
 }
 
-void map_ardupilot(MapBuilder& builder, const SurfaceThrows& throws) {
-  map_gps_velocity(builder);
-  builder.apply(ardupilot_rules());
+void map_servos(MapBuilder& builder, const SurfaceThrows& throws, ServoOutputs outputs) {
   // Elevons 77 and 78, V-tail 79 and 80.
-  map_pair(builder, {77, 78, "elevons", "elevator", "aileron", 1.0}, throws.elevator, throws.aileron);
-  map_pair(builder, {79, 80, "V-tail", "elevator", "rudder", -1.0}, throws.elevator, throws.rudder);
+  map_pair(builder, {77, 78, "elevons", "elevator", "aileron", 1.0}, throws.elevator, throws.aileron, outputs);
+  map_pair(builder, {79, 80, "V-tail", "elevator", "rudder", -1.0}, throws.elevator, throws.rudder, outputs);
   // SERVOn_FUNCTION: 4 aileron, 19 elevator, 21 rudder, 70 throttle (ArduPilot parameter list).
-  map_servo(builder, "aileron", 4, 1, throws.aileron);
-  map_servo(builder, "elevator", 19, 2, throws.elevator);
-  map_servo(builder, "throttle", 70, 3, 1.0);
-  map_servo(builder, "rudder", 21, 4, throws.rudder);
+  map_servo(builder, "aileron", 4, 1, throws.aileron, outputs);
+  map_servo(builder, "elevator", 19, 2, throws.elevator, outputs);
+  map_servo(builder, "throttle", 70, 3, 1.0, outputs);
+  map_servo(builder, "rudder", 21, 4, throws.rudder, outputs);
   if (!outputs_with(builder.log(), 24).empty() && outputs_with(builder.log(), 4).empty()) {
     builder.note(
         "flaperons (SERVOn_FUNCTION 24 and 25) are mixed in other ways by each release: map aileron in [data.map]");
+  }
+  if (outputs == ServoOutputs::kMavlink && !builder.mapped("elevator") &&
+      builder.log().has("SERVO_OUTPUT_RAW.servo1_raw")) {
+    builder.note(
+        "servo pulses are recorded, but no SERVOn_FUNCTION that says which surface each moves: ground stations record "
+        "parameters as they load them; map the surfaces in [data.map]");
   }
   if (!throws.known && (builder.mapped("elevator") || builder.mapped("aileron"))) {
     builder.note(
         "surface throws are not in the subject: servo positions are scaled to 0.35 rad, so control derivatives are "
         "relative");
   }
+}
+
+void map_ardupilot(MapBuilder& builder, const SurfaceThrows& throws) {
+  map_gps_velocity(builder);
+  builder.apply(ardupilot_rules());
+  map_servos(builder, throws, ServoOutputs::kDataflash);
   if (builder.log().has("AOA.AOA")) {
     builder.note("AOA is the autopilot's estimate from airspeed, wind and velocity, not a vane: not used");
   }

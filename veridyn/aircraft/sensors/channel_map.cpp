@@ -75,6 +75,9 @@ MappedRecording map_channels(const Recording& log, const StudyTable& map, const 
   } else if (internal::is_px4(log)) {
     mapped.log_kind = "PX4";
     internal::map_px4(builder, throws);
+  } else if (internal::is_mavlink(log)) {
+    mapped.log_kind = "MAVLink";
+    internal::map_mavlink(builder, throws);
   }
   mapped = recording::with_recognised_channels(std::move(mapped), log, standard_channels(), channel_aliases(), map);
   mapped = recording::with_channel_map(std::move(mapped), log, standard_channels(), map);

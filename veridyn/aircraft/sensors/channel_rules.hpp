@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <span>
 #include <string>
@@ -46,9 +47,22 @@ using recording::interpolated;
 [[nodiscard]] bool is_ardupilot(const Recording& log);
 /// By the topics that only its logs have.
 [[nodiscard]] bool is_px4(const Recording& log);
+/// By the messages of a telemetry log.
+[[nodiscard]] bool is_mavlink(const Recording& log);
 /// Adds the channels of an ArduPilot log.
 void map_ardupilot(MapBuilder& builder, const SurfaceThrows& throws);
 /// Adds the channels of a PX4 log.
 void map_px4(MapBuilder& builder, const SurfaceThrows& throws);
+
+/// Adds the channels of a telemetry log of MAVLink.
+void map_mavlink(MapBuilder& builder, const SurfaceThrows& throws);
+
+/// Where a log of ArduPilot has the pulses of its servos: `RCOU.C1`, or `SERVO_OUTPUT_RAW.servo1_raw`.
+enum class ServoOutputs { kDataflash, kMavlink };
+/// Surfaces and throttle from servo pulses, by the SERVOn_FUNCTION of the log's parameters. Without these, usual servos
+/// are assumed of a log of the autopilot itself; of telemetry, which may be of another, nothing is.
+void map_servos(MapBuilder& builder, const SurfaceThrows& throws, ServoOutputs outputs);
+/// Roll, pitch and yaw of a quaternion, scalar first.
+void put_attitude(MapBuilder& builder, const std::array<const Channel*, 4>& q, const std::string& source);
 
 }  // namespace veridyn::aircraft::internal

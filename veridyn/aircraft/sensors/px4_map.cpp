@@ -57,22 +57,7 @@ void map_attitude(MapBuilder& builder) {
   std::array<const Channel*, 4> q{};
   for (std::size_t i = 0; i < 4; ++i) q[i] = builder.log().find(fmt::format("vehicle_attitude.q[{}]", i));
   if (q[0] == nullptr || q[1] == nullptr || q[2] == nullptr || q[3] == nullptr || q[0]->empty()) return;
-  const std::size_t n = q[0]->size();
-  std::vector<double> roll(n);
-  std::vector<double> pitch(n);
-  std::vector<double> yaw(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const double w = q[0]->value[i];
-    const double x = q[1]->value[i];
-    const double y = q[2]->value[i];
-    const double z = q[3]->value[i];
-    roll[i] = std::atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y));
-    pitch[i] = std::asin(std::min(1.0, std::max(-1.0, 2.0 * (w * y - z * x))));
-    yaw[i] = std::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
-  }
-  builder.put("roll", "rad", q[0]->time, std::move(roll), "vehicle_attitude.q", "autopilot's filter");
-  builder.put("pitch", "rad", q[0]->time, std::move(pitch), "vehicle_attitude.q", "autopilot's filter");
-  builder.put("yaw", "rad", q[0]->time, std::move(yaw), "vehicle_attitude.q", "autopilot's filter");
+  put_attitude(builder, q, "vehicle_attitude.q");
 }
 
 /// Normalised controls -1..1 times the full throw. Positive PX4 control rolls right, pitches up, yaws right; a positive
@@ -113,6 +98,25 @@ void map_controls(MapBuilder& builder, const SurfaceThrows& throws) {
 }
 
 }  // namespace
+
+void put_attitude(MapBuilder& builder, const std::array<const Channel*, 4>& q, const std::string& source) {
+  const std::size_t n = q[0]->size();
+  std::vector<double> roll(n);
+  std::vector<double> pitch(n);
+  std::vector<double> yaw(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double w = q[0]->value[i];
+    const double x = q[1]->value[i];
+    const double y = q[2]->value[i];
+    const double z = q[3]->value[i];
+    roll[i] = std::atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y));
+    pitch[i] = std::asin(std::min(1.0, std::max(-1.0, 2.0 * (w * y - z * x))));
+    yaw[i] = std::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
+  }
+  builder.put("roll", "rad", q[0]->time, std::move(roll), source, "autopilot's filter");
+  builder.put("pitch", "rad", q[0]->time, std::move(pitch), source, "autopilot's filter");
+  builder.put("yaw", "rad", q[0]->time, std::move(yaw), source, "autopilot's filter");
+}
 
 bool is_px4(const Recording& log) {
   for (const char* name : {"vehicle_attitude.q[0]", "sensor_combined.gyro_rad[0]", "vehicle_angular_velocity.xyz[0]"}) {
