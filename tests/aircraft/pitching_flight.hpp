@@ -1,5 +1,7 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -73,6 +75,26 @@ inline Segments pitching_segments() {
     axis->holdout = {{kPitchingHoldout_s, kPitchingEnd_s}};
   }
   return segments;
+}
+
+/// Flights of an aircraft whose Cm differs from flight to flight, by `scatter` of each parameter.
+inline std::vector<PreparedFlight> pitching_set(const Subject& subject, std::size_t count, double scatter,
+                                                std::uint64_t seed) {
+  numerics::RandomStream random(seed, "pitching set");
+  std::vector<PreparedFlight> flights;
+  for (std::size_t i = 0; i < count; ++i) {
+    Subject flown = subject;
+    CoefficientModel cm = *flown.model.find(Coefficient::kCm);
+    for (double& value : cm.values) value *= 1.0 + scatter * random.normal();
+    flown.model.set(cm);
+    FlightSignals signals = pitching(flown, {.noise = 0.0, .later_noise = 0.0});
+    const double moment = 0.5 * 1.2 * 400.0 * subject.wing_area * subject.chord;
+    for (double& qdot : signals[FlightSignal::kQdot].value)
+      qdot += moment * 0.002 / subject.inertia->Jy * random.normal();
+    flights.push_back(only_flight(std::move(signals), pitching_segments()).front());
+    flights.back().name = fmt::format("flight{}.csv", i + 1);
+  }
+  return flights;
 }
 
 /// Cm of that flight; by OLS unless another method, or none (the comparison's choice), is given.

@@ -8,37 +8,13 @@
 #include <cmath>
 
 #include "tests/aircraft/pitching_flight.hpp"
-#include "veridyn/aircraft/identification/flight_rows.hpp"
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
-#include "veridyn/numerics/random.hpp"
 
 namespace veridyn::aircraft {
 namespace {
 
-using aircraft::testing::only_flight;
-using aircraft::testing::pitching;
-using aircraft::testing::pitching_segments;
+using aircraft::testing::pitching_set;
 using ::testing::HasSubstr;
-
-/// Flights of an aircraft whose Cm differs from flight to flight, by `scatter` of each parameter.
-std::vector<PreparedFlight> pitching_set(const Subject& subject, std::size_t count, double scatter,
-                                         std::uint64_t seed) {
-  numerics::RandomStream random(seed, "pitching set");
-  std::vector<PreparedFlight> flights;
-  for (std::size_t i = 0; i < count; ++i) {
-    Subject flown = subject;
-    CoefficientModel cm = *flown.model.find(Coefficient::kCm);
-    for (double& value : cm.values) value *= 1.0 + scatter * random.normal();
-    flown.model.set(cm);
-    FlightSignals signals = pitching(flown, {.noise = 0.0, .later_noise = 0.0});
-    const double moment = 0.5 * 1.2 * 400.0 * subject.wing_area * subject.chord;
-    for (double& qdot : signals[FlightSignal::kQdot].value)
-      qdot += moment * 0.002 / subject.inertia->Jy * random.normal();
-    flights.push_back(only_flight(std::move(signals), pitching_segments()).front());
-    flights.back().name = fmt::format("flight{}.csv", i + 1);
-  }
-  return flights;
-}
 
 CoefficientResult cm_of_set(const Subject& subject, std::span<const PreparedFlight> flights) {
   IdentifyOptions options;
@@ -51,37 +27,6 @@ CoefficientResult cm_of_set(const Subject& subject, std::span<const PreparedFlig
 estimation::Evidence scatter_row_of(const CoefficientResult& result) {
   const auto row = std::ranges::find(result.evidence, "scatter between flights", &estimation::Evidence::name);
   return row == result.evidence.end() ? estimation::Evidence{} : *row;
-}
-
-TEST(FlightSet, HasNoRowThatReachesFromOneFlightIntoTheNext) {
-  const Subject subject = builtin_subject("thor");
-  const std::vector<PreparedFlight> flights = pitching_set(subject, 3, 0.0, 1);
-  const CoefficientModel& cm = *subject.model.find(Coefficient::kCm);
-  const FlightRows rows = coefficient_rows(cm, flights, RowUse::kIdentification, subject);
-  const FlightRows one = coefficient_rows(cm, {flights.data(), 1}, RowUse::kIdentification, subject);
-  EXPECT_EQ(rows.flights(), 3u);
-  EXPECT_EQ(rows.data.rows(), 3 * one.data.rows());
-  EXPECT_EQ(rows.of(0).regressors, one.data.regressors);
-  for (std::size_t i = 1; i < 3; ++i) {
-    const auto begin = static_cast<std::size_t>(rows.first[i]);
-    EXPECT_NE(rows.data.segment[begin - 1], rows.data.segment[begin]);
-  }
-  EXPECT_NO_THROW(rows.data.validate()) << "no segment id comes back";
-  // Flights are alike: their errors are.
-  EXPECT_TRUE(rows.data.error_covariance.isApprox(one.data.error_covariance, 1e-9));
-}
-
-TEST(FlightSet, LeavesOutAFlightThatLacksASignal) {
-  const Subject subject = builtin_subject("thor");
-  std::vector<PreparedFlight> flights = pitching_set(subject, 2, 0.0, 1);
-  flights[1].signals[FlightSignal::kElevator].value.clear();
-  const CoefficientModel& cm = *subject.model.find(Coefficient::kCm);
-  const FlightRows rows = coefficient_rows(cm, flights, RowUse::kIdentification, subject);
-  EXPECT_EQ(rows.flights(), 1u);
-  EXPECT_EQ(rows.rows_of(1), 0);
-  EXPECT_EQ(identification_obstacle(cm, flights, subject), "");
-  flights[0].signals[FlightSignal::kElevator].value.clear();
-  EXPECT_THAT(identification_obstacle(cm, flights, subject), HasSubstr("needs elevator"));
 }
 
 // Four flights alike: half the standard error of one, and nothing that scatters.

@@ -103,49 +103,6 @@ TEST(IdentificationRows, FindAnElevatorThatMovesWithAlpha) {
   EXPECT_THAT(collinearity(0.0).text, HasSubstr("no larger than sensor noise"));
 }
 
-/// Judged on the whole flight, by the values of `estimate`.
-CoefficientResult evaluated(const estimation::Estimate& estimate) {
-  Subject subject = builtin_subject("thor");
-  const FlightSignals signals = aircraft::testing::pitching(subject);
-  return evaluate_estimate(aircraft::testing::only_flight(signals, aircraft::testing::pitching_segments()), subject, {},
-                           estimate)
-      .front();
-}
-
-estimation::Estimate cm_estimate() {
-  const Subject subject = builtin_subject("thor");
-  return make_estimate(subject, std::vector<CoefficientResult>{cm_of({})});
-}
-
-TEST(AnotherFlight, HoldsForTheSameAircraftAndNotForAnother) {
-  estimation::Estimate estimate = cm_estimate();
-  const CoefficientResult same = evaluated(estimate);
-  EXPECT_EQ(row_in(same, "another flight").outcome, Outcome::kPassed);
-  EXPECT_GT(row_in(same, "another flight").value, 0.9);
-  EXPECT_EQ(same.judgement.prediction.grade, estimation::Grade::kYes);
-  for (estimation::Parameter& p : estimate.parameters)
-    if (p.name == "Cm_de") p.value = -p.value;
-  const CoefficientResult other = evaluated(estimate);
-  EXPECT_EQ(row_in(other, "another flight").outcome, Outcome::kFailed);
-  EXPECT_EQ(other.verdict, estimation::GroupVerdict::kRejected);
-  EXPECT_EQ(other.judgement.prediction.grade, estimation::Grade::kNo);
-  // Validation says nothing of the parameters.
-  EXPECT_EQ(other.judgement.parameters.grade, estimation::Grade::kNotJudged);
-}
-
-// What was not excited keeps that status in a coefficient that was rejected, and is no model of it.
-TEST(AnotherFlight, DoesNotTryWhatWasRejectedWhereItWasIdentified) {
-  for (const char* held : {"none", "Cm_q"}) {
-    estimation::Estimate estimate = cm_estimate();
-    for (estimation::Parameter& p : estimate.parameters)
-      p.status = p.name == held ? estimation::ParameterStatus::kNotExcited : estimation::ParameterStatus::kRejected;
-    const CoefficientResult cm = evaluated(estimate);
-    EXPECT_EQ(cm.reason, "Cm is not validated: it was rejected where it was identified") << held;
-    EXPECT_TRUE(cm.evidence.empty()) << held;
-    EXPECT_FALSE(estimation::usable(cm.verdict)) << held;
-  }
-}
-
 TEST(Identification, AxisOfACoefficientIsWhatItsMotionIs) {
   for (const Coefficient c : {Coefficient::kCL, Coefficient::kCD, Coefficient::kCm})
     EXPECT_EQ(axis_of(c), Axis::kLongitudinal);

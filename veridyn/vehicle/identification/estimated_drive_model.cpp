@@ -1,6 +1,7 @@
 #include "veridyn/vehicle/identification/estimated_drive_model.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -45,26 +46,9 @@ EstimatedDriveModel estimated_drive_model(const estimation::Estimate& estimate,
   const double L = p.wheelbase();
   take("a", p.a);
   p.b = L - p.a;
-  for (const DriveUnknown u : {DriveUnknown::kMu,
-                               DriveUnknown::kShape,
-                               DriveUnknown::kCurvature,
-                               DriveUnknown::kRollGradient,
-                               DriveUnknown::kRollFrequency,
-                               DriveUnknown::kRollDamping,
-                               DriveUnknown::kRollArm,
-                               DriveUnknown::kRelaxationLength,
-                               DriveUnknown::kLoadTransfer,
-                               DriveUnknown::kLoadTransferLoss,
-                               DriveUnknown::kLoadTransferBalance,
-                               DriveUnknown::kDownforceF,
-                               DriveUnknown::kDownforceR,
-                               DriveUnknown::kLoadSensitivity,
-                               DriveUnknown::kFrontForceShare,
-                               DriveUnknown::kSteerScale,
-                               DriveUnknown::kAccelYScale,
-                               DriveUnknown::kSteerDelay,
-                               DriveUnknown::kYawRateDelay,
-                               DriveUnknown::kAccelYDelay}) {
+  constexpr std::array kOfVehicle{DriveUnknown::kCf, DriveUnknown::kCr, DriveUnknown::kIz, DriveUnknown::kA};
+  for (const DriveUnknown u : kAllDriveUnknowns) {
+    if (is_bias(u) || std::ranges::find(kOfVehicle, u) != kOfVehicle.end()) continue;
     take(kDriveUnknownNames[u], given.options.start[u]);
   }
   given.options.effects[DriveEffect::kDownforce] = estimate.find("downforce_f") != nullptr;

@@ -17,7 +17,8 @@ struct EstimatedDriveModel {
   std::vector<std::string> missing = {};  ///< of C_f, C_r and I_z those that it does not have
 };
 
-/// `vehicle` and `options` with the values of an estimate, as `identify` writes it.
+/// `vehicle` and `options` with the values of an estimate, as `identify` writes it; the wheelbase stays. Biases are
+/// each drive's own and stay as `options` has them.
 [[nodiscard]] EstimatedDriveModel estimated_drive_model(const estimation::Estimate& estimate,
                                                         const VehicleParameters<double>& vehicle,
                                                         const DriveModelOptions& options);
