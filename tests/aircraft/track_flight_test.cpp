@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/recording/study_data.hpp"
@@ -134,12 +135,12 @@ TEST(TrackFlight, StartsFromAnEstimate) {
   FlightStudy study = flown_study();
   const TrackingAnalysis first = track_flight(study, silent);
   EXPECT_EQ(of(first.flight, Coefficient::kCm).start, "no estimate");
-  const std::filesystem::path path = std::filesystem::temp_directory_path() / "veridyn_track_start.json";
+  const test::TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "estimate.json";
   write_file(path, io::to_json(first.flight.tracker().estimate()));
   FlightStudy again = flown_study();
   again.track.estimate_file = path.string();
   const TrackingAnalysis second = track_flight(again, silent);
-  std::filesystem::remove(path);
   EXPECT_EQ(of(second.flight, Coefficient::kCm).start, "batch estimate");
   // It knows Cm_alpha within a second, where a flight that starts from nothing does not: the change in the flight
   // behind the estimate left it error bars by which the first rows still hold a direction.

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "tests/support/refusal.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 
@@ -131,7 +132,8 @@ TEST(Study, TakesRelativeFilesFromItsFolder) {
 }
 
 TEST(Study, TakesTheSubjectOfAFileWhereItHasNoKeysOfItsOwn) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "veridyn_subject_of_file";
+  const test::TemporaryFolder temporary;
+  const std::filesystem::path& folder = temporary.path();
   std::filesystem::create_directories(folder / "out");
   write_file(folder / "out" / "subject.toml",
              "# graded\n[subject]\nmass = -5\nspan = 2\nname = \"a.tir\"\n[subject.tyres]\nfront = \"front.tir\"\n"
@@ -169,7 +171,6 @@ TEST(Study, TakesTheSubjectOfAFileWhereItHasNoKeysOfItsOwn) {
               HasSubstr("takes its subject from another file; name that one"));
   EXPECT_THAT(why([&] { static_cast<void>(in_folder("[subject]\na = 1\n", {"subject.file="})); }),
               testing::StartsWith("--set subject.file: is empty"));
-  std::filesystem::remove_all(folder);
 }
 
 TEST(Study, SaysWhereTheTomlIsBroken) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::cueing {
@@ -83,6 +84,7 @@ TEST(CueingStudy, TheDriversPlaceFeelsTheTurn) {
 }
 
 TEST(CueingStudy, SaysWhatIsWrongAndWhere) {
+  const test::TemporaryFolder folder;
   EXPECT_THAT(refusal(std::string("[cue]\nalgorithms = [\"clasical\"]\n") + kDrive),
               HasSubstr("did you mean 'classical'"));
   EXPECT_THAT(refusal(std::string("[cue]\n[washout.classical]\nonset = [0, 1, 1]\n") + kDrive),
@@ -96,9 +98,9 @@ TEST(CueingStudy, SaysWhatIsWrongAndWhere) {
       HasSubstr("has 1 values for 2 frequencies"));
 }
 
-/// A recorded drive of 10 s at 100 Hz in a file of its own; what is to be written into a study.
-std::string recorded_drive(const std::string& name, bool with_positions = false) {
-  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / name;
+/// A recorded drive of 10 s at 100 Hz in a file of `folder`; what is to be written into a study.
+std::string recorded_drive(const test::TemporaryFolder& folder, const std::string& name, bool with_positions = false) {
+  const std::filesystem::path file = folder.path() / name;
   std::ofstream out(file);
   out << "time[s],accel_x[m/s^2],accel_y[m/s^2],accel_z[m/s^2],gyro_x[rad/s],gyro_y[rad/s],gyro_z[rad/s]"
       << (with_positions ? ",pos_x[m],pos_y[m]\n" : "\n");
@@ -112,13 +114,15 @@ std::string recorded_drive(const std::string& name, bool with_positions = false)
 }
 
 TEST(CueingStudy, IsNamedAfterTheDriveThatIsScoredNotTheOneThatIsTunedOn) {
-  const CueingStudy s = read("[cue]\n[data]\n" + recorded_drive("cueing_scored.csv") +
-                             "[tune]\nevaluations = 1\n[tune.data]\n" + recorded_drive("cueing_tuned_on.csv"));
+  const test::TemporaryFolder folder;
+  const CueingStudy s = read("[cue]\n[data]\n" + recorded_drive(folder, "cueing_scored.csv") +
+                             "[tune]\nevaluations = 1\n[tune.data]\n" + recorded_drive(folder, "cueing_tuned_on.csv"));
   EXPECT_FALSE(s.tune_on.empty());
   EXPECT_EQ(s.drive, "cueing_scored.csv");
 }
 
 TEST(CueingStudy, ForeseesFromTheDriverOrFromALap) {
+  const test::TemporaryFolder folder;
   const std::string four_wheel =
       "[subject]\nkind = \"vehicle\"\nbuiltin = \"reference\"\n[drive]\nmodel = \"four-wheel\"\nmanoeuvre = "
       "\"sine\"\namplitude = \"2 deg\"\nfrequency = \"0.3 Hz\"\nspeed = 15\nduration = 12\n";
@@ -133,14 +137,14 @@ TEST(CueingStudy, ForeseesFromTheDriverOrFromALap) {
       account(read(mpc + "[cue.vehicle]\nkind = \"vehicle\"\nbuiltin = \"reference\"\nmass = 1200\n" + four_wheel)),
       HasSubstr("steering and pedals foresaw"));
 
-  const std::string lap = recorded_drive("cueing_lap.csv", true);
+  const std::string lap = recorded_drive(folder, "cueing_lap.csv", true);
   const CueingStudy same = read(mpc + "[cue.lap]\n" + lap + "[data]\n" + lap);
   EXPECT_THAT(same.notes, Contains(HasSubstr("the lap cueing_lap.csv is also driven or tuned on")));
   EXPECT_THAT(account(same), HasSubstr("sway: the lap foresaw 100 %"));
 
-  EXPECT_THAT(refusal(mpc + "[cue.lap]\n" + lap + "[data]\n" + recorded_drive("cueing_no_place.csv")),
+  EXPECT_THAT(refusal(mpc + "[cue.lap]\n" + lap + "[data]\n" + recorded_drive(folder, "cueing_no_place.csv")),
               HasSubstr("rig.toml:4: cue.lap: is of no use: the drive has no positions"));
-  EXPECT_THAT(refusal(mpc + "[cue.lap]\n" + recorded_drive("cueing_no_place.csv") + "[data]\n" + lap),
+  EXPECT_THAT(refusal(mpc + "[cue.lap]\n" + recorded_drive(folder, "cueing_no_place.csv") + "[data]\n" + lap),
               HasSubstr("has no positions: channels pos_x and pos_y are needed"));
   EXPECT_THAT(refusal(mpc + "foresee = \"lap\"\n" + four_wheel), HasSubstr("needs a lap of the same track"));
   EXPECT_THAT(refusal(mpc + "foresee = \"driver\"\n[data]\n" + lap), HasSubstr("map a channel to `steer`"));

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
 
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/numerics/random.hpp"
@@ -20,12 +20,6 @@ using ::testing::HasSubstr;
 
 class Calibration : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("veridyn_calibration_" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   fs::path file(const std::string& name, const std::string& content) const {
     write_file(folder_ / name, content);
     return folder_ / name;
@@ -60,7 +54,8 @@ class Calibration : public ::testing::Test {
     return calibrate(study);
   }
 
-  fs::path folder_;
+  test::TemporaryFolder temporary_;
+  const fs::path& folder_ = temporary_.path();
 };
 
 TEST_F(Calibration, FindsScaleAndBiasWithIntervalsThatHold) {

@@ -2,13 +2,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "tests/support/refusal.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/files.hpp"
 
 namespace veridyn::camera {
@@ -17,8 +17,6 @@ namespace {
 class VideoFramesTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() / ("veridyn_video_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder_);
     for (int k = 0; k < 20; ++k) {
       GreyImage image{.width = 64, .height = 48, .pixels = {}};
       for (int y = 0; y < 48; ++y)
@@ -26,7 +24,6 @@ class VideoFramesTest : public ::testing::Test {
       images_.push_back(image);
     }
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   std::string read_all(const std::filesystem::path& file) {
     return why([&] {
@@ -36,7 +33,8 @@ class VideoFramesTest : public ::testing::Test {
     });
   }
 
-  std::filesystem::path folder_;
+  test::TemporaryFolder temporary_;
+  const std::filesystem::path& folder_ = temporary_.path();
   std::vector<GreyImage> images_;
 };
 

@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -7,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/camera/tracking/video_library.hpp"
 
 /// The functions of the library behind the table, as they are called across its border.
@@ -17,14 +17,9 @@ namespace fs = std::filesystem;
 
 class OpencvVideo : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("veridyn_opencv_" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   const VideoLibrary& library_ = video_library();
-  fs::path folder_;
+  test::TemporaryFolder temporary_;
+  const fs::path& folder_ = temporary_.path();
 };
 
 // A grey level per frame: what the compression changes of an even picture is a level or two.

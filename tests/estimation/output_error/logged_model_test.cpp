@@ -1,7 +1,6 @@
 #include "veridyn/estimation/output_error/logged_model.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <array>
 #include <atomic>
@@ -9,6 +8,7 @@
 #include <thread>
 
 #include "tests/estimation/output_error/example_models.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/estimation/output_error/output_error.hpp"
 
 namespace veridyn::estimation {
@@ -42,8 +42,6 @@ class CountingModel final : public ParametricModel {
 class LoggedModelTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() / ("veridyn_logged_" + std::to_string(::getpid()));
-    std::filesystem::remove_all(folder_);
     for (std::size_t s = 0; s < 2; ++s) {
       ModelResponse truth;
       ASSERT_TRUE(model_.respond(s, Eigen::Vector3d(1.4, 0.7, 0.2), {}, truth));
@@ -53,7 +51,6 @@ class LoggedModelTest : public ::testing::Test {
     }
     options_.threads = 1;
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   [[nodiscard]] LoggedModel logged(const ParametricModel& model, numerics::ValueLog* log) const {
     return {model, "trained", [this](std::size_t s, const RowMatrix& y) { return (measured_[s] - y).norm(); }, log};
@@ -72,7 +69,8 @@ class LoggedModelTest : public ::testing::Test {
   FirstOrder model_{{input(1.0), input(2.5)}, 0.1};
   std::vector<RowMatrix> measured_;
   OutputErrorOptions options_;
-  std::filesystem::path folder_;
+  test::TemporaryFolder temporary_;
+  std::filesystem::path folder_ = temporary_.path() / "log";
 };
 
 TEST_F(LoggedModelTest, AnswersAsTheModelDoes) {

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "tests/estimation/search/search_problems.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/estimation/search/particle_swarm.hpp"
 #include "veridyn/estimation/search/pattern_search.hpp"
@@ -53,7 +54,8 @@ TEST(BatchEvaluator, EvaluatesNoPointTwice) {
 }
 
 TEST(BatchEvaluator, TwoProcessesEvaluateHalfEachAndComeToTheSameBits) {
-  const std::filesystem::path folder = empty_folder("two_processes");
+  const test::TemporaryFolder temporary;
+  const std::filesystem::path& folder = temporary.path();
   Progress calm;
   BatchEvaluator alone(disc(), {}, calm);
   (void)both(alone);
@@ -96,7 +98,8 @@ TEST(BatchEvaluator, ResumedAtAnyPointEndsAsIfNeverInterrupted) {
   CountingProgress calm;
   BatchEvaluator whole(disc(), {}, calm);
   const SearchResult expected = both(whole);
-  const std::filesystem::path folder = empty_folder("search_resumed");
+  const test::TemporaryFolder temporary;
+  const std::filesystem::path& folder = temporary.path();
   numerics::RandomStream random(7, "interruptions");
   for (int trial = 0; trial < 20; ++trial) {
     const std::filesystem::path log = folder / ("log" + std::to_string(trial) + ".csv");

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "tests/estimation/search/search_problems.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 
@@ -23,7 +24,8 @@ std::string refusal_of(const BlackBoxProblem& problem, const std::filesystem::pa
 }
 
 TEST(SearchLog, RefusesTheLogOfAnotherSearchSayingWhatDiffers) {
-  const std::filesystem::path log = empty_folder("search_log_refused") / "log.csv";
+  const test::TemporaryFolder folder;
+  const std::filesystem::path log = folder.path() / "log.csv";
   BlackBoxProblem p = disc();
   p.identity = {{"tasks", "1 5"}};
   ASSERT_EQ(refusal_of(p, log), "");
@@ -53,7 +55,8 @@ TEST(SearchLog, RefusesTheLogOfAnotherSearchSayingWhatDiffers) {
 }
 
 TEST(SearchLog, RefusesPointsThatTheSearchDoesNotComeTo) {
-  const std::filesystem::path log = empty_folder("search_log_points") / "log.csv";
+  const test::TemporaryFolder folder;
+  const std::filesystem::path log = folder.path() / "log.csv";
   Progress progress;
   {
     BatchEvaluator evaluator(disc(), {.log = log}, progress);

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <filesystem>
 #include <limits>
 #include <string>
 
@@ -80,13 +79,6 @@ inline SearchResult both(BatchEvaluator& evaluator) {
   const SearchResult start = particle_swarm(evaluator, {.particles = 12, .iterations = 15});
   if (start.termination == SearchTermination::kInterrupted) return start;
   return pattern_search(evaluator, start.x, {.tolerance = 1e-4});
-}
-
-inline std::filesystem::path empty_folder(const std::string& name) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / name;
-  std::filesystem::remove_all(folder);
-  std::filesystem::create_directories(folder);
-  return folder;
 }
 
 }  // namespace veridyn::estimation

@@ -60,7 +60,7 @@ TEST(DriverSource, SaysWhyADeviceIsNoWheel) {
   EXPECT_EQ(why([] { static_cast<void>(wheel_source("/dev/input/no-wheel")); }),
             "/dev/input/no-wheel: there is no such device; is it plugged in?");
   EXPECT_EQ(why([] { static_cast<void>(wheel_source("/dev/null")); }), "/dev/null: not an input device");
-  const testing::WithoutRights closed("veridyn_wheel_without_rights");
+  const testing::WithoutRights closed;
   EXPECT_EQ(why([&] { static_cast<void>(wheel_source(closed.path())); }),
             closed.path() + ": no right to open it; members of the group 'input' have it");
 }

@@ -2,11 +2,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <numbers>
 
 #include "tests/support/refusal.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/live/driver/driver_source.hpp"
 
@@ -17,7 +17,6 @@ using ::testing::HasSubstr;
 
 class DriverTableTest : public ::testing::Test {
  protected:
-  void TearDown() override { std::filesystem::remove(path_); }
   [[nodiscard]] std::vector<WheelEvent> read(const std::string& text) const {
     write_file(path_, text);
     return read_driver_table(path_);
@@ -25,8 +24,8 @@ class DriverTableTest : public ::testing::Test {
   std::string refusal(const std::string& text) const {
     return why([&] { static_cast<void>(read(text)); });
   }
-  std::filesystem::path path_ =
-      std::filesystem::temp_directory_path() / ("veridyn_driver_" + std::to_string(::getpid()) + ".csv");
+  veridyn::test::TemporaryFolder folder_;
+  std::filesystem::path path_ = folder_.path() / "driver.csv";
 };
 
 const std::string kTable = "time[s],steering[deg],throttle,brake,reverse\n0,0,0,0,0\n1,90,0.5,0,0\n2,90,0,1,1\n";

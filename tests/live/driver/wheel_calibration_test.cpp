@@ -7,6 +7,7 @@
 
 #include "tests/live/driver/recorded_wheel.hpp"
 #include "tests/support/refusal.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/files.hpp"
 
@@ -93,9 +94,6 @@ TEST(WheelCalibration, SaysNothingBeforeEveryAxisWasHeardOf) {
 
 class CalibrationFile {
  public:
-  CalibrationFile()
-      : path_(::testing::TempDir() + ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".toml") {}
-  ~CalibrationFile() { std::filesystem::remove(path_); }
   [[nodiscard]] WheelCalibration read(const std::string& text) const {
     write_file(path_, text);
     return WheelCalibration::load(path_);
@@ -106,7 +104,8 @@ class CalibrationFile {
   }
 
  private:
-  std::string path_;
+  veridyn::test::TemporaryFolder folder_;
+  std::string path_ = (folder_.path() / "wheel.toml").string();
 };
 
 TEST(WheelCalibration, IsWrittenAndReadAgain) {

@@ -27,7 +27,7 @@ TEST(WheelDevice, IsRefusedInOneLine) {
   EXPECT_EQ(refusal(file.path()), file.path() + ": not an input device");
   EXPECT_EQ(refusal("/dev/null"), "/dev/null: not an input device");
   {
-    const testing::WithoutRights closed("wheel_without_rights");
+    const testing::WithoutRights closed;
     EXPECT_EQ(refusal(closed.path()), closed.path() + ": no right to open it; members of the group 'input' have it");
   }
   EXPECT_EQ(refusal(::testing::TempDir()), ::testing::TempDir() + ": not an input device");

@@ -1,15 +1,14 @@
 #include "veridyn/live/page/page_token.hpp"
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 
 #include "tests/support/refusal.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::live {
@@ -18,8 +17,8 @@ namespace {
 using ::testing::HasSubstr;
 
 TEST(PageToken, OfAFileThatOthersCanReadIsRefused) {
-  const std::filesystem::path file =
-      std::filesystem::temp_directory_path() / fmt::format("veridyn_token_{}", ::getpid());
+  const veridyn::test::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "token";
   std::ofstream(file) << "  0123456789abcdef  \n";
   ::chmod(file.c_str(), 0600);
   EXPECT_EQ(read_token_file(file), "0123456789abcdef");
@@ -28,7 +27,6 @@ TEST(PageToken, OfAFileThatOthersCanReadIsRefused) {
   ::chmod(file.c_str(), 0600);
   std::ofstream(file) << "short\n";
   EXPECT_THAT(why([&] { static_cast<void>(read_token_file(file)); }), HasSubstr("a token of 5 characters"));
-  std::filesystem::remove(file);
   EXPECT_THROW(static_cast<void>(read_token_file(file)), InputError);
 }
 

@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <array>
 #include <fstream>
@@ -10,6 +9,7 @@
 
 #include "tests/live/recording/some_records.hpp"
 #include "tests/support/refusal.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace veridyn::live {
 namespace {
@@ -18,9 +18,6 @@ using ::testing::HasSubstr;
 
 class GrowingLiveFileTest : public ::testing::Test {
  protected:
-  GrowingLiveFileTest() : path_(::testing::TempDir() + "growing_" + std::to_string(::getpid()) + ".vlr") {}
-  ~GrowingLiveFileTest() override { std::filesystem::remove(path_); }
-
   void append(const std::string& bytes) const { std::ofstream(path_, std::ios::binary | std::ios::app) << bytes; }
   /// A block with one record, a turn of the knob of this number.
   static std::string block(std::uint16_t number) {
@@ -34,7 +31,8 @@ class GrowingLiveFileTest : public ::testing::Test {
     while (file.read([&](const LiveRecord& r) { knobs.push_back(r.knob); })) continue;
   }
 
-  std::filesystem::path path_;
+  veridyn::test::TemporaryFolder temporary_;
+  std::filesystem::path path_ = temporary_.path() / "growing.vlr";
 };
 
 TEST_F(GrowingLiveFileTest, HandsEachRecordOverOnceWhereverTheFileIsCutOffMeanwhile) {

@@ -1,6 +1,5 @@
 #include "veridyn/live/recording/live_recorder.hpp"
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +8,7 @@
 
 #include "tests/live/recording/some_records.hpp"
 #include "tests/support/refusal.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace veridyn::live {
 namespace {
@@ -19,12 +19,8 @@ using testing::some_records;
 
 class LiveRecorderTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    path_ = std::filesystem::temp_directory_path() /
-            fmt::format("veridyn_recorder_{}.vlr", ::testing::UnitTest::GetInstance()->current_test_info()->name());
-  }
-  void TearDown() override { std::filesystem::remove(path_); }
-  std::filesystem::path path_;
+  veridyn::test::TemporaryFolder temporary_;
+  std::filesystem::path path_ = temporary_.path() / "recorded.vlr";
 };
 
 TEST_F(LiveRecorderTest, WritesEveryRecordInOrder) {

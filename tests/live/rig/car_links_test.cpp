@@ -1,8 +1,6 @@
 #include <gtest/gtest.h>
 
 #ifdef VERIDYN_HAS_SOCKETS
-#include <unistd.h>
-
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -11,6 +9,7 @@
 #include <vector>
 
 #include "tests/live/rig/car_links_in_memory.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/live/rig/car_links.hpp"
 #include "veridyn/live/serial/pseudo_terminal.hpp"
@@ -31,10 +30,7 @@ class CarLinksTest : public ::testing::Test {
     study.platform = platform.bound_to();
     study.telemetry = UdpSocket({kLoopbackOfCar, 0}, "test").bound_to();
   }
-  ~CarLinksTest() override {
-    car.reset();
-    std::filesystem::remove_all(folder_);
-  }
+  ~CarLinksTest() override { car.reset(); }
 
   /// What comes in of one link, as text, until `count` have or a second has passed.
   std::vector<std::string> incoming(CarLinks& links, LinkOf link, std::size_t count) {
@@ -50,12 +46,8 @@ class CarLinksTest : public ::testing::Test {
   void say(std::string_view bytes) { car->write({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}); }
 
  private:
-  static std::filesystem::path new_folder() {
-    const auto folder = std::filesystem::temp_directory_path() / ("veridyn_car_links_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder);
-    return folder;
-  }
-  std::filesystem::path folder_ = new_folder();
+  veridyn::test::TemporaryFolder temporary_;
+  const std::filesystem::path& folder_ = temporary_.path();
 
  protected:
   std::unique_ptr<PseudoTerminal> car;

@@ -2,12 +2,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <numbers>
 
 #include "tests/live/rig/car_links_in_memory.hpp"
 #include "tests/support/refusal.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/files.hpp"
 
 namespace veridyn::live {
@@ -56,13 +56,12 @@ TEST(CarStudy, RefusesInOneLineWithItsPlace) {
 }
 
 TEST(CarStudy, RecordingHoldsTheCalibrationItself) {
-  const std::filesystem::path file =
-      std::filesystem::temp_directory_path() / ("veridyn_wheel_" + std::to_string(::getpid()) + ".toml");
+  const veridyn::test::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "wheel.toml";
   write_file(file, source_calibration().to_toml());
   const Study study =
       Study::parse(kHead + "[live.driver]\nwheel = '/dev/null'\ncalibration = '" + file.string() + "'\n", "rig.toml");
   const LiveStudy by_file = read_live_study(study);
-  std::filesystem::remove(file);
   EXPECT_TRUE(by_file.driver->calibration_by_file);
   const LiveStudy again = test::car_study(with_calibration(study, *by_file.driver).to_toml());
   EXPECT_FALSE(again.driver->calibration_by_file);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -10,6 +9,7 @@
 #include <string_view>
 
 #include "tests/live/weaving_drive.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/live/link/live_links.hpp"
 #include "veridyn/live/recording/live_file.hpp"
 #include "veridyn/live/virtual/virtual_platform.hpp"
@@ -64,16 +64,11 @@ class MemoryLinks final : public LiveLinks {
 /// A run that may be recorded, in a file that goes when the test ends.
 class LiveLoopTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    path_ = std::filesystem::temp_directory_path() /
-            fmt::format("veridyn_loop_{}.vlr", ::testing::UnitTest::GetInstance()->current_test_info()->name());
-  }
-  void TearDown() override { std::filesystem::remove(path_); }
-
   static LiveHead head_of(const std::string& study) {
     return {.program = "test", .study = study, .study_name = "rig.toml", .started = 0, .started_utc = 0, .session = 5};
   }
-  std::filesystem::path path_;
+  veridyn::test::TemporaryFolder temporary_;
+  std::filesystem::path path_ = temporary_.path() / "loop.vlr";
 };
 
 }  // namespace veridyn::live::test

@@ -10,6 +10,7 @@
 #include "tests/live/rig/car_links_in_memory.hpp"
 #include "tests/live/rig/links_in_memory.hpp"
 #include "tests/live/rig/recorded_run.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/live/recording/live_recorder.hpp"
 
@@ -97,7 +98,8 @@ TEST_F(LiveLoopTest, TheRecordingOfARunThatWasCutOffIsReplayedAsFarAsItGoes) {
 }
 
 TEST(CarLink, IsReplayedBitForBitWithItsCommands) {
-  const std::filesystem::path path = std::filesystem::temp_directory_path() / "veridyn_car_replay.vlr";
+  const veridyn::test::TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "car.vlr";
   {
     CarRun r(0.01);
     LiveRecorder recorder(path, {.program = "test",
@@ -112,7 +114,6 @@ TEST(CarLink, IsReplayedBitForBitWithItsCommands) {
   }
   Progress progress;
   const LiveReplay replayed = replay(read_live_file(path), path.string(), progress);
-  std::filesystem::remove(path);
   EXPECT_EQ(replayed.times.steps, 500U);
   EXPECT_EQ(replayed.different, 0U);
   ASSERT_TRUE(replayed.car);
@@ -136,7 +137,8 @@ TEST(CarLink, IsReplayedBitForBitWithItsCommands) {
 }
 
 TEST(CarLink, ReplayFindsACommandThatDiffers) {
-  const std::filesystem::path path = std::filesystem::temp_directory_path() / "veridyn_car_differs.vlr";
+  const veridyn::test::TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "car.vlr";
   {
     CarRun r;
     LiveRecorder recorder(path, {.program = "test",
@@ -149,7 +151,6 @@ TEST(CarLink, ReplayFindsACommandThatDiffers) {
   }
   Progress progress;
   const LiveReplay replayed = replay(read_live_file(path), path.string(), progress);
-  std::filesystem::remove(path);
   EXPECT_EQ(replayed.car->commands_different, replayed.car->commands);
 }
 

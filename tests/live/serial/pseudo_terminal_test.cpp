@@ -1,11 +1,11 @@
 #include "veridyn/live/serial/pseudo_terminal.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
 
 #include "tests/support/refusal.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/live/serial/serial_line.hpp"
 
 namespace veridyn::live {
@@ -13,8 +13,8 @@ namespace {
 
 class PseudoTerminalTest : public ::testing::Test {
  protected:
-  void TearDown() override { std::filesystem::remove(name_); }
-  std::filesystem::path name_ = std::filesystem::temp_directory_path() / ("veridyn_pty_" + std::to_string(::getpid()));
+  veridyn::test::TemporaryFolder folder_;
+  std::filesystem::path name_ = folder_.path() / "line";
 };
 
 TEST_F(PseudoTerminalTest, IsOpenedUnderItsNameWhichGoesWithIt) {

@@ -8,6 +8,7 @@
 
 #include "tests/live/serial/without_rights.hpp"
 #include "tests/support/refusal.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/live/serial/pseudo_terminal.hpp"
 
 namespace veridyn::live {
@@ -67,13 +68,13 @@ TEST(SerialLine, IsRefusedInOneLine) {
     return why([&] { SerialLine line({.device = device, .baud = baud}); });
   };
   EXPECT_EQ(refusal("/dev/ttyUSB_none"), "/dev/ttyUSB_none: there is no such device; is it plugged in?");
-  const std::filesystem::path folder = ::testing::TempDir();
+  const veridyn::test::TemporaryFolder temporary;
+  const std::filesystem::path& folder = temporary.path();
   EXPECT_EQ(refusal(folder), folder.string() + ": a folder, not a device");
   const std::filesystem::path file = folder / "serial_line_test.txt";
   std::ofstream(file) << "text";
   EXPECT_EQ(refusal(file), file.string() + ": not a serial line");
   EXPECT_EQ(refusal("/dev/null"), "/dev/null: not a serial line");
-  std::filesystem::remove(file);
 
   PseudoTerminal terminal;
   const std::string device = terminal.device();
@@ -94,7 +95,7 @@ TEST(SerialLine, IsRefusedInOneLine) {
 }
 
 TEST(SerialLine, IsRefusedWithoutTheRightToOpenIt) {
-  const testing::WithoutRights file("serial_line_without_rights");
+  const testing::WithoutRights file;
   EXPECT_EQ(why([&] { SerialLine line({.device = file.path()}); }),
             file.path() + ": no right to open it; members of the group 'dialout' have it");
 }

@@ -8,20 +8,23 @@
 #include <fstream>
 #include <string>
 
+#include "tests/support/temporary_folder.hpp"
+
 namespace veridyn::live::testing {
 
 /// A file that this program may not open while the object lives, the superuser's program neither: it acts for another
 /// user until then.
 class WithoutRights {
  public:
-  explicit WithoutRights(const std::string& name) : path_(std::filesystem::temp_directory_path() / name) {
+  WithoutRights() {
+    // Of the file alone: its folder is open to everybody.
+    std::filesystem::permissions(folder_.path(), std::filesystem::perms(0755));
     std::ofstream(path_) << "text";
     ::chmod(path_.c_str(), 0);
     if (own_ == 0) lowered_ = ::seteuid(kNobody) == 0;
   }
   ~WithoutRights() {
     if (lowered_ && ::seteuid(own_) != 0) std::abort();
-    std::filesystem::remove(path_);
   }
   WithoutRights(const WithoutRights&) = delete;
   WithoutRights& operator=(const WithoutRights&) = delete;
@@ -30,7 +33,8 @@ class WithoutRights {
 
  private:
   static constexpr uid_t kNobody = 65534;
-  std::filesystem::path path_;
+  veridyn::test::TemporaryFolder folder_;
+  std::filesystem::path path_ = folder_.path() / "closed";
   uid_t own_ = ::geteuid();
   bool lowered_ = false;
 };

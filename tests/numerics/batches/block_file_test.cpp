@@ -1,18 +1,19 @@
 #include "veridyn/numerics/batches/block_file.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <limits>
 
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/files.hpp"
 
 namespace veridyn::numerics {
 namespace {
 
 TEST(BlockFile, IsTextWithTheBitsOfEachValue) {
-  const auto path = std::filesystem::temp_directory_path() / ("veridyn_block_" + std::to_string(::getpid()));
+  const test::TemporaryFolder folder;
+  const auto path = folder.path() / "block";
   Block expected{.batch = "b", .fingerprint = 0xabc, .first = 10, .values = {0.0, 0.0}};
   EXPECT_EQ(read_block(path, expected), BlockState::kAbsent);
   write_block(path, {.batch = "b",
@@ -29,7 +30,6 @@ TEST(BlockFile, IsTextWithTheBitsOfEachValue) {
   EXPECT_EQ(expected.seconds, 0.25);
   expected.first = 11;
   EXPECT_EQ(read_block(path, expected), BlockState::kOtherBatch);
-  std::filesystem::remove(path);
 }
 
 }  // namespace

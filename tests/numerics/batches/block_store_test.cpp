@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <bit>
@@ -11,6 +10,7 @@
 #include <limits>
 #include <thread>
 
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 
@@ -34,12 +34,6 @@ class StoreProgress : public Progress {
 
 class BlockStoreTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() / ("veridyn_blocks_" + std::to_string(::getpid()));
-    std::filesystem::remove_all(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   /// 47 items in blocks of 5; every value is odd bits, some are NaN, infinite or -0.
   [[nodiscard]] Batch batch() {
     const auto value = [this](std::size_t i) {
@@ -75,7 +69,8 @@ class BlockStoreTest : public ::testing::Test {
   }
 
   static inline const BlockStore::Identity kIdentity = {{"program", "veridyn 1"}, {"study", "samples = 4"}};
-  std::filesystem::path folder_;
+  test::TemporaryFolder temporary_;
+  std::filesystem::path folder_ = temporary_.path() / "checkpoint";
   StoreProgress progress_;
   std::atomic<int> computed_ = 0;
 };

@@ -2,12 +2,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <stdexcept>
 #include <string>
 #include <thread>
+
+#include "tests/support/temporary_folder.hpp"
 
 namespace veridyn::numerics {
 namespace {
@@ -16,15 +17,11 @@ using namespace std::chrono_literals;
 
 class CompanionsTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() / ("veridyn_companions_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
   static ProcessShare share(std::size_t index) {
     return {.index = index, .count = 2, .wait = true, .patience_s = 0.05};
   }
-  std::filesystem::path folder_;
+  test::TemporaryFolder temporary_;
+  const std::filesystem::path& folder_ = temporary_.path();
 };
 
 TEST_F(CompanionsTest, ShowThatTheyLiveOnlyWhereTheyWait) {

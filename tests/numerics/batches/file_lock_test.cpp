@@ -2,11 +2,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <stdexcept>
 #include <string>
 
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 
@@ -14,8 +14,8 @@ namespace veridyn::numerics {
 namespace {
 
 TEST(FileLock, IsHeldByOneAndFreeAfterwards) {
-  const std::filesystem::path file =
-      std::filesystem::temp_directory_path() / ("veridyn_file_lock_" + std::to_string(::getpid()));
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "lock";
   write_file(file, "kept");
   {
     const FileLock first(file);
@@ -28,7 +28,6 @@ TEST(FileLock, IsHeldByOneAndFreeAfterwards) {
   }
   EXPECT_NO_THROW(FileLock third(file));
   EXPECT_EQ(read_file(file), "kept");
-  std::filesystem::remove(file);
   EXPECT_THROW(FileLock none(file / "no" / "folder"), std::runtime_error);
 }
 

@@ -7,6 +7,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "tests/support/temporary_folder.hpp"
+
 namespace veridyn::numerics {
 namespace {
 
@@ -26,7 +28,8 @@ bool changes(HeartbeatWatch& watch, int times) {
 }
 
 TEST(Heartbeat, IsSeenUntilItsEnd) {
-  const auto file = std::filesystem::temp_directory_path() / ("veridyn_beat_" + std::to_string(::getpid()));
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "beat";
   HeartbeatWatch watch(file);
   EXPECT_EQ(watch.who(), "");
   {
@@ -41,7 +44,8 @@ TEST(Heartbeat, IsSeenUntilItsEnd) {
 }
 
 TEST(Heartbeat, IsNeverSeenEmptyBetweenTwoBeats) {
-  const auto file = std::filesystem::temp_directory_path() / ("veridyn_steady_beat_" + std::to_string(::getpid()));
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "beat";
   const Heartbeat beat(file, 0ms);
   HeartbeatWatch watch(file);
   ASSERT_TRUE(changes(watch, 1));

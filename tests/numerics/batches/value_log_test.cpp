@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <array>
 #include <atomic>
@@ -13,6 +12,7 @@
 #include <string>
 #include <thread>
 
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/numerics/batches/heartbeat.hpp"
@@ -25,13 +25,6 @@ using ::testing::HasSubstr;
 
 class ValueLogTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() / ("veridyn_values_" + std::to_string(::getpid()));
-    std::filesystem::remove_all(folder_);
-    file_ = folder_ / "evaluations.log";
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   /// Three records.
   void fill() const {
     ValueLog log(folder_);
@@ -45,7 +38,8 @@ class ValueLogTest : public ::testing::Test {
     return {.index = index, .count = count, .wait = true, .patience_s = patience_s};
   }
 
-  std::filesystem::path folder_, file_;
+  test::TemporaryFolder temporary_;
+  std::filesystem::path folder_ = temporary_.path() / "log", file_ = folder_ / "evaluations.log";
   std::vector<double> values_;
 };
 

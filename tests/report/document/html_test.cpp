@@ -2,12 +2,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "tests/report/sample_document.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/report/document/page.hpp"
@@ -21,15 +21,9 @@ using testing::Not;
 
 class WriteHtml : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("veridyn_report_" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override {
-    fs::permissions(folder_, fs::perms::owner_all);
-    fs::remove_all(folder_);
-  }
-  fs::path folder_;
+  void TearDown() override { fs::permissions(folder_, fs::perms::owner_all); }
+  test::TemporaryFolder temporary_;
+  const fs::path& folder_ = temporary_.path();
 };
 
 std::size_t count(const std::string& text, std::string_view what) {

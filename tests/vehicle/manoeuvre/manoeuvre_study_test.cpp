@@ -5,6 +5,7 @@
 #include <string>
 
 #include "tests/support/refusal.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/vehicle/manoeuvre/steer_at.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/study.hpp"
@@ -15,8 +16,9 @@ namespace {
 
 using testing::steer;
 
-Manoeuvre read(const std::string& text, const ManoeuvreContext& context = {}) {
-  const Study study = Study::parse("[drive]\n" + text, "study.toml", std::filesystem::temp_directory_path());
+Manoeuvre read(const std::string& text, const ManoeuvreContext& context = {},
+               const std::filesystem::path& folder = {}) {
+  const Study study = Study::parse("[drive]\n" + text, "study.toml", folder);
   const StudyTable drive = study.root().table("drive");
   Manoeuvre m = read_manoeuvre(drive, context, Progress());
   drive.finish();
@@ -76,17 +78,16 @@ TEST(Manoeuvre, AddsTorquesAndHoldsASpeedWhereTheModelHasThem) {
 }
 
 TEST(Manoeuvre, ReadsARecordedSignal) {
-  const std::filesystem::path file = std::filesystem::temp_directory_path() / "veridyn_steer_test.csv";
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "steer.csv";
+  const std::string signal = "manoeuvre = \"signal\"\nfile = \"steer.csv\"";
   std::ofstream(file) << "time[s],steer[deg],brake_torque[N m]\n0,0,0\n1,2,100\n2,2,0\n";
-  const Manoeuvre m = read("manoeuvre = \"signal\"\nfile = \"veridyn_steer_test.csv\"");
+  const Manoeuvre m = read(signal, {}, folder.path());
   EXPECT_NEAR(steer(m, 0.5), 1.0 * kDegree, 1e-12);
   EXPECT_NEAR(m.driver->controls(1.5).brake_torque, 50.0, 1e-12);
   EXPECT_EQ(m.default_duration, 2.0);
   std::ofstream(file) << "time[s],steer[m]\n0,0\n1,2\n";
-  EXPECT_NE(
-      why([] { (void)read("manoeuvre = \"signal\"\nfile = \"veridyn_steer_test.csv\""); }).find("column steer is in m"),
-      std::string::npos);
-  std::filesystem::remove(file);
+  EXPECT_NE(why([&] { (void)read(signal, {}, folder.path()); }).find("column steer is in m"), std::string::npos);
 }
 
 TEST(Manoeuvre, RefusesWhatNobodyCanDriveWithThePlace) {

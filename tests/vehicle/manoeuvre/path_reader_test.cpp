@@ -7,6 +7,7 @@
 
 #include "tests/support/folders.hpp"
 #include "tests/support/refusal.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/vehicle/manoeuvre/path.hpp"
 
 namespace veridyn::vehicle {
@@ -40,12 +41,12 @@ TEST(Path, RefusesBrokenFilesWithTheLine) {
 }
 
 TEST(Path, ReadsTablesOfPoints) {
-  const std::filesystem::path file = std::filesystem::temp_directory_path() / "veridyn_path_test.csv";
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "path.csv";
   std::ofstream(file) << "x[m],y[cm]\n0,0\n10,0\n20,0\n30,0\n";
   EXPECT_NEAR(read_path(file).length(), 30.0, 1e-9);
   std::ofstream(file) << "x[m],y[deg]\n0,0\n10,0\n20,0\n30,0\n";
   EXPECT_NE(why([&] { (void)read_path(file); }).find("column y is in rad, expected a length [m]"), std::string::npos);
-  std::filesystem::remove(file);
 }
 
 TEST(Path, ReadsTheLaneChangesOfProjectChrono) {

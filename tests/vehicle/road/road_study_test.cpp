@@ -8,6 +8,7 @@
 #include <string>
 
 #include "tests/support/refusal.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/vehicle/road/roads.hpp"
 #include "veridyn/core/files.hpp"
 
@@ -44,14 +45,13 @@ TEST_F(RoadStudy, ReadsEveryKind) {
   EXPECT_EQ(read("kind = 'iso8608'\nclass = 'D'\n")->height(at(40.0)),
             read("kind = 'iso8608'\nroughness = 1024e-6\nseed = 5\n")->height(at(40.0)));
   EXPECT_NE(read("kind = 'iso8608'\n")->height(at(40.0)), read("kind = 'iso8608'\nseed = 6\n")->height(at(40.0)));
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "veridyn_road_study";
-  std::filesystem::create_directories(folder);
+  const test::TemporaryFolder temporary;
+  const std::filesystem::path& folder = temporary.path();
   write_file(folder / "p.csv", "distance[m],height[m]\n0,0\n10,1\n");
   write_file(folder / "r.crg", text_crg());
   EXPECT_DOUBLE_EQ(read("kind = 'file'\nfile = 'p.csv'\n", folder)->height(at(5.0)), 0.5);
   EXPECT_FLOAT_EQ(static_cast<float>(read("kind = 'file'\nfile = 'r.crg'\n", folder)->height({12.0, 0.5, 0.0, 0.0})),
                   0.25F);
-  std::filesystem::remove_all(folder);
 }
 
 TEST_F(RoadStudy, RefusesWithTheLineOfTheKey) {
