@@ -10,6 +10,7 @@
 #include "veridyn/io/dataflash/dataflash.hpp"
 #include "veridyn/io/dataflash/dataflash_text.hpp"
 #include "veridyn/io/formats_not_read.hpp"
+#include "veridyn/io/log/log_parts.hpp"
 #include "veridyn/io/log/mapped_file.hpp"
 #include "veridyn/io/matlab/mat.hpp"
 #include "veridyn/io/mavlink/tlog.hpp"
@@ -86,7 +87,10 @@ const char* name_of(Format format) {
 
 }  // namespace
 
-Log read_log(const std::filesystem::path& path, const ReadOptions& options) {
+namespace {
+
+/// All of a file.
+Log read_whole(const std::filesystem::path& path, const ReadOptions& options) {
   if (std::error_code error; std::filesystem::is_directory(path, error))
     return is_csv_folder(path) ? read_csv_folder(path, options.csv) : read_npy_folder(path);
   const MappedFile file(path);
@@ -146,6 +150,14 @@ Log read_log(const std::filesystem::path& path, const ReadOptions& options) {
     log.damage.notes.push_back(fmt::format("the name promises {}, the content is {} and was read as such",
                                            name_of(expected), name_of(format)));
   }
+  return log;
+}
+
+}  // namespace
+
+Log read_log(const std::filesystem::path& path, const ReadOptions& options) {
+  Log log = read_whole(path, options);
+  choose_part(log, options.csv.part);
   return log;
 }
 

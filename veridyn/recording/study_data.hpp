@@ -69,7 +69,7 @@ void check_study_data(const StudyTable& data, std::span<const StandardChannel> s
 
 /// How `[data]` says that a file is to be read: `time`, `columns`, `delimiter` (",", ";", "tab", "blank"), `decimal`
 /// (".",
-/// ","), `part` (of a table whose clock restarts, from 1), `packet`. @throws InputError for values of the wrong kind.
+/// ","), `part` (of a log of several, from 1), `packet`. @throws InputError for values of the wrong kind.
 [[nodiscard]] io::ReadOptions read_study_options(const StudyTable& data, const std::filesystem::path& path);
 
 /// One file, read as `[data.time]` says; for domains whose `[data]` names files under other keys.

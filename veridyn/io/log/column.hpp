@@ -93,6 +93,19 @@ class Column {
     for (const std::uint64_t row : rows) chosen.push_back(number(row));
     return Column(std::move(chosen));
   }
+  /// Keeps rows [begin, end).
+  void keep(std::size_t begin, std::size_t end) {
+    std::visit(
+        [&](auto& values) {
+          if constexpr (std::is_same_v<std::decay_t<decltype(values)>, TextColumn>) {
+            values = values.part(begin, end);
+          } else {
+            values.resize(end);
+            values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(begin));
+          }
+        },
+        storage_);
+  }
   /// Keeps the first `count` rows.
   void shorten(std::size_t count) {
     std::visit([count](auto& values) { values.resize(count); }, storage_);

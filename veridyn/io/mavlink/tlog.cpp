@@ -109,10 +109,10 @@ class TlogReader {
       add_topics(name_of(sender, main, stream), stream, times[sender]);
     }
     const auto own = clocks_.find(main);
-    if (own != clocks_.end() && own->second.restarts() > 0)
-      log_.damage.notes.push_back(
-          fmt::format("the vehicle started anew {} time{}; its times go on after what came before",
-                      own->second.restarts(), own->second.restarts() == 1 ? "" : "s"));
+    if (own != clocks_.end()) log_.restarts = own->second.restarts();
+    if (const std::size_t count = log_.restarts.size(); count > 0)
+      log_.damage.notes.push_back(fmt::format(
+          "the vehicle started anew {} time{}; its times go on after what came before", count, count == 1 ? "" : "s"));
   }
 
  private:

@@ -19,7 +19,7 @@ void SenderClock::add(double received, std::optional<double> own) {
     const std::int32_t kind = *own > kSince1970_s ? 1 : 0;
     Clock& clock = clocks_[kind];
     if (clock.epochs.empty() || *own < clock.epochs.back().latest - kRestart_s)
-      clock.epochs.push_back({received - *own, *own});
+      clock.epochs.push_back({received - *own, *own, *own});
     Epoch& epoch = clock.epochs.back();
     epoch.delay = std::min(epoch.delay, received - *own);
     epoch.latest = std::max(epoch.latest, *own);
@@ -48,9 +48,15 @@ std::vector<double> SenderClock::times() const {
   return times;
 }
 
-std::size_t SenderClock::restarts() const {
-  const auto restarted = [](const Clock& clock) { return clock.epochs.empty() ? 0 : clock.epochs.size() - 1; };
-  return std::max(restarted(clocks_[0]), restarted(clocks_[1]));
+std::vector<double> SenderClock::restarts() const {
+  std::vector<double> moments;
+  for (const Clock& clock : clocks_) {
+    if (clock.epochs.size() <= moments.size() + 1) continue;
+    moments.clear();
+    for (std::size_t i = 1; i < clock.epochs.size(); ++i)
+      moments.push_back(clock.epochs[i].first + clock.epochs[i].delay);
+  }
+  return moments;
 }
 
 }  // namespace veridyn::io::internal

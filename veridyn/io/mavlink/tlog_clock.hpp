@@ -15,14 +15,15 @@ class SenderClock {
   void add(double received, std::optional<double> own);
   /// Of the packets in the order in which they were added [s].
   [[nodiscard]] std::vector<double> times() const;
-  /// How often the sender's clock began anew.
-  [[nodiscard]] std::size_t restarts() const;
+  /// When the sender's clock began anew [s].
+  [[nodiscard]] std::vector<double> restarts() const;
 
  private:
   /// A stretch without a restart.
   struct Epoch {
     double delay = 0.0;  ///< least of received less own
     double latest = 0.0;
+    double first = 0.0;
   };
   struct Packet {
     double time = 0.0;       ///< own, or guessed of it; where there is no epoch as received

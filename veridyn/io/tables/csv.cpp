@@ -347,13 +347,13 @@ class CsvParser {
 
   /// Where the clock restarts, keeps one part of the rows.
   void keep_one_part() {
-    if (row_count_ == 0 || time_.column == TimeChoice::kNone || (restarts_.empty() && options_.part <= 1)) return;
+    if (row_count_ == 0 || time_.column == TimeChoice::kNone || restarts_.empty()) return;
     const std::vector<double>& stamps = columns_[time_.column].numbers;
     const std::vector<internal::ClockPart> parts = internal::clock_parts(restarts_, row_count_);
-    if (parts.empty() && !restarts_.empty()) throw InputError(backwards_, backwards_words_);
-    if (parts.empty()) throw InputError(log_.source, fmt::format("has no part {}", options_.part));
+    if (parts.empty()) throw InputError(backwards_, backwards_words_);
     const std::size_t read = internal::choose_part(parts, stamps, options_.part, log_.source);
-    if (parts.size() > 1) log_.damage.notes.push_back(internal::parts_in_words(parts, stamps, read));
+    log_.damage.notes.push_back(internal::parts_in_words(parts, stamps, read));
+    log_.part = read + 1;
     for (Growing& column : columns_) column.keep(parts[read]);
     row_count_ = parts[read].end - parts[read].begin;
   }

@@ -93,6 +93,7 @@ Log read_csv_folder(const std::filesystem::path& folder, const TableOptions& opt
     try {
       Log part = read_csv_file(path, options);
       if (whole.frame == Frame::kUnspecified) whole.frame = part.frame;
+      whole.part = std::max(whole.part, part.part);
       for (LogTopic& topic : part.topics) {
         topic.name = name;
         whole.topics.push_back(std::move(topic));

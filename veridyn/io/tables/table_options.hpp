@@ -16,7 +16,9 @@ struct TableOptions {
   double rate = 0.0;      ///< [Hz] of the rows of a table that has no stamps: they are made; 0: there is a time column
   char delimiter = '\0';  ///< ' ' for blanks and tabulators; '\0': comma, semicolon or tabulator, else blanks
   char decimal = '\0';    ///< '.' or ','; '\0': a comma where cells hold one and it does not separate them
-  std::size_t part = 0;   ///< of a table whose clock restarts: which stretch, from 1; 0: the longest
+  /// Which part of a file of several, from 1: of a table whose clock restarts (0: the longest), of any log with pauses
+  /// (0: all).
+  std::size_t part = 0;
 };
 
 }  // namespace veridyn::io
