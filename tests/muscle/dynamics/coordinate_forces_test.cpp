@@ -88,14 +88,46 @@ TEST(CoordinateForces, OfASpringAreThoseOfItsEnergyAndItsDamperDissipates) {
 }
 
 TEST(PassiveTension, IsNoneWhileThePathIsSlackAndNeverAPush) {
-  const std::variant<PathSpringLaw, LigamentLaw> spring = PathSpringLaw{0.3, 100.0, 0.5};
+  const PassivePathLaw spring = PathSpringLaw{0.3, 100.0, 0.5};
   EXPECT_EQ(passive_tension(spring, 0.29, 1.0), 0.0);
   EXPECT_DOUBLE_EQ(passive_tension(spring, 0.4, 0.4), 100.0 * (0.4 - 0.3) * 1.2);
   EXPECT_EQ(passive_tension(spring, 0.4, -3.0), 0.0);
-  const std::variant<PathSpringLaw, LigamentLaw> ligament =
-      LigamentLaw{0.2, 50.0, numerics::PiecewisePolynomial::linear(2.0, 0.0)};
+  const PassivePathLaw ligament = LigamentLaw{0.2, 50.0, numerics::PiecewisePolynomial::linear(2.0, 0.0)};
   EXPECT_NEAR(passive_tension(ligament, 0.22, 0.0), 50.0 * 2.0 * 0.1, 1e-12);
   EXPECT_EQ(passive_tension(ligament, 0.2, 0.0), 0.0);
+}
+
+/// Energy stored by a Blankevoort ligament: the integral of its law over the length.
+double stored(const BlankevoortLaw& law, double length) {
+  const double e = length / law.slack_length - 1.0, t = law.transition_strain;
+  const double unit = law.linear_stiffness * law.slack_length;
+  if (!(e > 0.0)) return 0.0;
+  return e < t ? unit * e * e * e / (6.0 * t) : unit * (t * t / 6.0 + 0.5 * e * (e - t));
+}
+
+TEST(CoordinateForces, OfABlankevoortLigamentAreTheSlopeOfItsEnergy) {
+  const BlankevoortLaw law{.slack_length = 0.05, .linear_stiffness = 2000.0, .transition_strain = 0.06};
+  for (const double length : {0.04, 0.0499, 0.051, 0.0525, 0.0529, 0.0531, 0.06}) {
+    constexpr double kStep = 1e-6;
+    const double slope = (stored(law, length + kStep) - stored(law, length - kStep)) / (2.0 * kStep);
+    // Central differences of energies of joules: rounding of 1e-16/h, and h^2 times a third derivative.
+    EXPECT_NEAR(passive_tension<double>(law, length, 0.0), slope, 1e-5) << length;
+  }
+  // At twice the transition strain 2000 (0.12 - 0.03) N.
+  EXPECT_NEAR(passive_tension<double>(law, 0.05 * 1.12, 0.0), 180.0, 1e-9);
+}
+
+TEST(CoordinateForces, ABlankevoortLigamentDampsOnlyWhileItLengthens) {
+  const BlankevoortLaw law{
+      .slack_length = 0.05, .linear_stiffness = 2000.0, .transition_strain = 0.06, .damping_coefficient = 3.0};
+  const double length = 0.05 * 1.12;
+  EXPECT_NEAR(passive_tension<double>(law, length, 0.1), 180.0 + 3.0 * 0.1 / 0.05, 1e-9);
+  EXPECT_NEAR(passive_tension<double>(law, length, -0.1), 180.0, 1e-9);
+  // Half of it at half of the strain at which it is whole; none when slack.
+  const double strain = 0.005;
+  EXPECT_NEAR(passive_tension<double>(law, 0.05 * (1.0 + strain), 0.1),
+              2000.0 * strain * strain / 0.12 + 0.5 * 3.0 * 0.1 / 0.05, 1e-9);
+  EXPECT_EQ(passive_tension<double>(law, 0.049, 1.0), 0.0);
 }
 
 }  // namespace

@@ -145,5 +145,21 @@ TEST(OsimForce, PassivePathsAreRead) {
   EXPECT_FALSE(model.unsupported[0].changes_motion);
 }
 
+TEST(OsimForce, ABlankevoortLigamentIsReadWithItsDefaults) {
+  const Model model = with_forces(
+      fmt::format("<Blankevoort1991Ligament name=\"acl\">{}<linear_stiffness>5000</linear_stiffness><slack_length>0.03"
+                  "</slack_length></Blankevoort1991Ligament>",
+                  kPath));
+  ASSERT_EQ(model.passive_paths.size(), 1u);
+  EXPECT_TRUE(model.unsupported.empty());
+  const auto& law = std::get<BlankevoortLaw>(model.passive_paths[0].law);
+  EXPECT_DOUBLE_EQ(law.linear_stiffness, 5000.0);
+  EXPECT_DOUBLE_EQ(law.slack_length, 0.03);
+  EXPECT_DOUBLE_EQ(law.transition_strain, 0.06);
+  EXPECT_DOUBLE_EQ(law.damping_coefficient, 0.003);
+  EXPECT_THAT(error_of(fmt::format("<Blankevoort1991Ligament name=\"acl\">{}</Blankevoort1991Ligament>", kPath)),
+              HasSubstr("slack_length"));
+}
+
 }  // namespace
 }  // namespace veridyn::muscle

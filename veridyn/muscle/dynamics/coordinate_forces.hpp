@@ -78,10 +78,24 @@ void add_coordinate_forces(const Model& model, const Scalar* q, const Scalar* qd
     tau[spring.coordinate] += spring_force(spring, q[spring.coordinate], qdot[spring.coordinate]);
 }
 
+/// Tension by the law of Blankevoort & Huiskes: the spring's part and the damper's [N].
+template <typename Scalar>
+[[nodiscard]] Scalar blankevoort_tension(const BlankevoortLaw& law, const Scalar& length, const Scalar& speed) {
+  const Scalar strain = length / law.slack_length - 1.0;
+  if (!(strain > Scalar(0.0))) return length * 0.0;
+  Scalar tension = strain < Scalar(law.transition_strain)
+                       ? Scalar(strain * strain * (0.5 * law.linear_stiffness / law.transition_strain))
+                       : Scalar((strain - 0.5 * law.transition_strain) * law.linear_stiffness);
+  constexpr double kFullDamping = 0.01;
+  if (speed > Scalar(0.0))
+    tension +=
+        speed * (law.damping_coefficient / law.slack_length) * internal::smooth_step(Scalar(strain / kFullDamping));
+  return tension;
+}
+
 /// Tension of a stretched path of this length and lengthening speed; 0 while it is slack [N].
 template <typename Scalar>
-[[nodiscard]] Scalar passive_tension(const std::variant<PathSpringLaw, LigamentLaw>& law, const Scalar& length,
-                                     const Scalar& speed) {
+[[nodiscard]] Scalar passive_tension(const PassivePathLaw& law, const Scalar& length, const Scalar& speed) {
   Scalar tension = length * 0.0;
   if (const auto* spring = std::get_if<PathSpringLaw>(&law)) {
     if (length > Scalar(spring->resting_length))
@@ -90,6 +104,8 @@ template <typename Scalar>
     if (length > Scalar(ligament->resting_length))
       tension = ligament->curve.evaluate(Scalar((length - ligament->resting_length) / ligament->resting_length)).value *
                 ligament->pcsa_force;
+  } else if (const auto* blankevoort = std::get_if<BlankevoortLaw>(&law)) {
+    tension = blankevoort_tension(*blankevoort, length, speed);
   }
   return tension > Scalar(0.0) ? tension : length * 0.0;
 }

@@ -186,12 +186,25 @@ struct LigamentLaw {
   numerics::PiecewisePolynomial curve;
 };
 
+/// Tension of a path at strain e = L/L0 - 1 above 0, as Blankevoort & Huiskes (1991) have it, J Biomech Eng 113:263
+/// (Blankevoort1991Ligament): k e^2/(2 e_t) up to the transition strain e_t and k (e - e_t/2) from there, and while it
+/// lengthens damping e', which fades out below a strain of 0.01.
+struct BlankevoortLaw {
+  double slack_length = 0.0;         ///< L0 [m]
+  double linear_stiffness = 0.0;     ///< k [N]: per strain
+  double transition_strain = 0.06;   ///< e_t
+  double damping_coefficient = 0.0;  ///< [N s]: per strain rate
+};
+
+/// How a path's tension follows from its length and speed: `passive_tension` in dynamics/coordinate_forces.hpp.
+using PassivePathLaw = std::variant<PathSpringLaw, LigamentLaw, BlankevoortLaw>;
+
 /// A path under tension that nothing excites. It wraps as muscles do.
 struct PassivePath {
   std::string name;
   std::vector<PathPoint> points;
   std::vector<PathWrap> wraps;
-  std::variant<PathSpringLaw, LigamentLaw> law;
+  PassivePathLaw law;
 };
 
 /// A point on a body that motion capture observes.

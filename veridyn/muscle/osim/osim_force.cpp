@@ -206,6 +206,17 @@ void read_ligament(Context& context, const Element& e) {
   context.model.passive_paths.push_back(std::move(path));
 }
 
+void read_blankevoort_ligament(Context& context, const Element& e) {
+  PassivePath path;
+  path.name = e.name();
+  read_path(context, e, path.points, path.wraps);
+  path.law = BlankevoortLaw{.slack_length = e.positive_or("slack_length", -1.0),
+                            .linear_stiffness = e.not_negative_or("linear_stiffness", 1.0),
+                            .transition_strain = e.not_negative_or("transition_strain", 0.06),
+                            .damping_coefficient = e.not_negative_or("damping_coefficient", 0.003)};
+  context.model.passive_paths.push_back(std::move(path));
+}
+
 }  // namespace
 
 bool read_passive_force(Context& context, const Element& e) {
@@ -218,6 +229,7 @@ bool read_passive_force(Context& context, const Element& e) {
   if (type == "SmoothSphereHalfSpaceForce") return read_smooth_contact(context, e);
   if (type == "PathSpring") return read_path_spring(context, e), true;
   if (type == "Ligament") return read_ligament(context, e), true;
+  if (type == "Blankevoort1991Ligament") return read_blankevoort_ligament(context, e), true;
   return false;
 }
 

@@ -31,7 +31,8 @@ struct PathWorkspace;
 ///
 /// Points are fixed, conditional or moving as in the file. A wrap object acts on every segment of its range by itself
 /// (on paths with conditional points, and as OpenSim does: on the first that meets the object, otherwise the one that a
-/// quadrant's wall lengthens least). Objects that share a segment are solved together until all tangent points settle.
+/// quadrant's wall lengthens least). Objects that share a segment are solved together until all tangent points settle;
+/// of objects that cross, so that they have no string in common, those count over which the longest string runs.
 ///
 /// What is the same for every pose (segments within a link) is computed once here, what several muscles share
 /// (segments, wraps of one pair of points) once per pose. Immutable, used by many threads at once; no call below

@@ -60,6 +60,10 @@ class PathSolver {
   bool detect(const Path& path, PathFlag& flag);
   /// Puts the wraps of `mask` on the path of points: w_.nodes, w_.result. Returns the number of nodes.
   std::size_t solve(const Path& path, unsigned mask);
+  /// The same without regard to whether objects cross.
+  std::size_t solve_all(const Path& path, unsigned mask);
+  /// Whether the n nodes solved last leave one object inside another one, or objects did not settle.
+  bool crossing(std::size_t n) const;
   /// The same on the side `side_`, object after object until all tangent points settle.
   std::size_t settle(const Path& path, unsigned mask);
   /// Whether nodes lie next to those of the best path so far: on one side no other solution is that near.
@@ -106,7 +110,8 @@ class PathSolver {
   SpatialVector<Scalar>* by_link_ = nullptr;  ///< where `add_string` adds forces of `tension_`; null: nowhere
   Scalar tension_{};
   std::size_t n_stations_ = 0;
-  unsigned done_ = 0;  ///< fading objects that `blended` has decided on
+  unsigned done_ = 0;    ///< fading objects that `blended` has decided on
+  bool settled_ = true;  ///< what `settle` did last
   int side_ = 0;
   bool repeats_ = false;     ///< this side's solution is the best path so far
   double give_up_ = 0.0;     ///< length above which another side is abandoned

@@ -159,7 +159,41 @@ inline bool PathSolver<Scalar>::detect(const Path& path, PathFlag& flag) {
 }
 
 template <typename Scalar>
+inline bool PathSolver<Scalar>::crossing(std::size_t n) const {
+  if (!settled_) return true;
+  for (std::size_t k = 1; k + 2 < n; ++k) {
+    const Node& a = w_.nodes[k];
+    if (a.wrap < 0 || a.wrap != w_.nodes[k + 1].wrap) continue;
+    const bool between = w_.nodes[k - 1].point < 0 || w_.nodes[k + 2].point < 0;
+    if (between && w_.result[static_cast<std::size_t>(a.wrap)]->depth > 0.0) return true;
+  }
+  return false;
+}
+
+template <typename Scalar>
 inline std::size_t PathSolver<Scalar>::solve(const Path& path, unsigned mask) {
+  std::size_t n = solve_all(path, mask);
+  if (!path.coupled || paths_.mode_ == WrapMode::kAsOpenSim || !crossing(n)) return n;
+  // A string cannot run over objects that cross: of the fewer ones over which it can, those that it goes round
+  // farthest.
+  const unsigned all = mask & ((1u << path.wraps.size()) - 1u);
+  double longest = -1.0;
+  swap_with_other();
+  for (unsigned part = (all - 1u) & all; part != 0u; part = (part - 1u) & all) {
+    const std::size_t count = settle(path, part);
+    if (crossing(count)) continue;
+    const double length = muscle::value_of(measure<false>(path, count, Scalar(1.0)));
+    if (length <= longest) continue;
+    longest = length;
+    n = count;
+    swap_with_other();
+  }
+  swap_with_other();
+  return n;
+}
+
+template <typename Scalar>
+inline std::size_t PathSolver<Scalar>::solve_all(const Path& path, unsigned mask) {
   const std::size_t n = settle(path, mask);
   if (!path.coupled || paths_.mode_ == WrapMode::kAsOpenSim) return n;
   double spread = 1.0;
@@ -167,6 +201,7 @@ inline std::size_t PathSolver<Scalar>::solve(const Path& path, unsigned mask) {
     if (w_.nodes[k].wrap >= 0) spread = std::min(spread, w_.result[static_cast<std::size_t>(w_.nodes[k].wrap)]->spread);
   if (spread >= 0.7) return n;
   // Objects solved one after the other may settle on the longer of two sides: try the other one too.
+  bool settled = settled_;
   const double length = muscle::value_of(measure<false>(path, n, Scalar(1.0)));
   double other_length = length;
   std::size_t other_n = n;
@@ -180,10 +215,12 @@ inline std::size_t PathSolver<Scalar>::solve(const Path& path, unsigned mask) {
     if (!repeats_ && l < other_length - 1e-12) {
       other_length = l;
       other_n = count;
+      settled = settled_;
       swap_with_other();
     }
   }
   side_ = 0;
+  settled_ = settled;
   swap_with_other();
   return other_n;
 }
@@ -209,6 +246,7 @@ template <typename Scalar>
 inline std::size_t PathSolver<Scalar>::settle(const Path& path, unsigned mask) {
   std::copy_n(w_.stations.begin(), n_stations_, w_.nodes.begin());
   std::size_t n = n_stations_;
+  settled_ = true;
   if (!path.coupled) {
     for (std::size_t i = 0; i < path.wraps.size(); ++i) {
       if ((mask >> i & 1u) == 0 || w_.first_segment[i] < 0) continue;
@@ -231,6 +269,7 @@ inline std::size_t PathSolver<Scalar>::settle(const Path& path, unsigned mask) {
   std::fill_n(solved_at.begin(), path.wraps.size(), -1);
   int step = 0;
   Acceleration acceleration;
+  bool settled = false;
   for (int pass = 0; pass < 60; ++pass) {
     double moved = 0.0;
     for (std::size_t i = 0; i < path.wraps.size(); ++i) {
@@ -267,17 +306,20 @@ inline std::size_t PathSolver<Scalar>::settle(const Path& path, unsigned mask) {
         changed_at[i] = step;
       }
     }
-    if (moved == 0.0 || (pass > 0 && moved < 1e-10 && more-- <= 0)) break;
+    settled = moved == 0.0 || (pass > 0 && moved < 1e-10 && more-- <= 0);
+    if (settled) break;
     // Nearly settled tangent points show which solution they approach; the length is stationary and shows whether it
     // is longer.
     if (side_ != 0 && moved < kNearlySettled) {
       repeats_ = as_before(n);
-      if (repeats_ || muscle::value_of(measure<false>(path, n, Scalar(1.0))) > give_up_) break;
+      settled = repeats_ || muscle::value_of(measure<false>(path, n, Scalar(1.0))) > give_up_;
+      if (settled) break;
     }
     if constexpr (std::is_same_v<Scalar, double>) {
       if (pass > 0) accelerate(n, moved, acceleration);
     }
   }
+  settled_ = settled;
   return n;
 }
 

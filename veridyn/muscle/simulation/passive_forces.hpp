@@ -58,7 +58,7 @@ class PassiveForces {
 
  private:
   BodyForces bodies_;
-  std::vector<std::variant<PathSpringLaw, LigamentLaw>> laws_;
+  std::vector<PassivePathLaw> laws_;
   std::shared_ptr<const MusclePaths> paths_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/core/assert.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/muscle/dynamics/coordinate_forces.hpp"
 
@@ -190,6 +191,7 @@ void SystemLinearization::evaluate_muscles(const double* x, const SystemInputs& 
 
 /// Accelerations: J' M J zddot = J' (tau - h - M bias).
 bool SystemLinearization::evaluate_skeleton(const SystemInputs& inputs, double* acceleration) {
+  VERIDYN_ASSERT(inputs.external == nullptr);  // their derivatives by the pose are not among the equations
   const CoordinateReduction& reduction = system_->reduction();
   const ExpandedState<double>& s = reduced_.state();
   Dynamics<double>& dynamics = reduced_.dynamics();

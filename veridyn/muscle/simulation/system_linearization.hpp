@@ -50,7 +50,7 @@ class SystemLinearization {
   /// The weights of forcings by excitations, du/dtheta at the instant: those of other fields are not changed.
   void set_weight(std::size_t forcing, double weight) { forcings_[forcing].weight = weight; }
 
-  /// x' for the state x, and the linearisation there. False when the mass matrix is singular.
+  /// x' for the state x, and the linearisation there, without external loads. False when the mass matrix is singular.
   [[nodiscard]] bool derivative(const double* x, const SystemInputs& inputs, double* rate);
   /// The same for a stage of a step that is implicit in the fibre lengths, as `SystemEvaluator::stage`.
   [[nodiscard]] bool stage(double step, double* x, const SystemInputs& inputs, double* rate);
