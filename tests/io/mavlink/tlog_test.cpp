@@ -40,6 +40,8 @@ TEST(Tlog, ReadsBothVersionsInSiWithUnknownNumbersLeftOut) {
   EXPECT_NEAR(value("SCALED_PRESSURE.temperature", 0), 291.15, 1e-9);
   EXPECT_NEAR(value("SERVO_OUTPUT_RAW.servo2_raw", 10), 1550e-6, 1e-12);
   EXPECT_NEAR(value("VFR_HUD.throttle", 0), 0.55, 1e-12);
+  EXPECT_EQ(recording.find("SERVO_OUTPUT_RAW.servo9_raw"), nullptr) << "an extension that was not sent";
+  EXPECT_NE(recording.find("SERVO_OUTPUT_RAW.servo5_raw"), nullptr);
   EXPECT_EQ(recording.at("ATTITUDE.roll").size(), 40U);
   EXPECT_EQ(recording.information.at("format"), "MAVLink telemetry log");
 }

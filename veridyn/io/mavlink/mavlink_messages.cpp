@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <string>
+#include <utility>
 
 #include "veridyn/core/constants.hpp"
 
@@ -292,21 +292,33 @@ const MavlinkField* MavlinkMessage::find(std::string_view field_name) const {
 }
 
 const MavlinkMessage* find_mavlink_message(std::uint32_t id) {
-  static const std::map<std::uint32_t, MavlinkMessage> messages = [] {
-    std::map<std::uint32_t, MavlinkMessage> by_id;
-    for (MavlinkMessage& m : declared()) by_id.emplace(m.id, laid_out(m));
-    return by_id;
+  constexpr std::size_t kIds = 512;
+  static const std::vector<MavlinkMessage> messages = [] {
+    std::vector<MavlinkMessage> all;
+    for (MavlinkMessage& m : declared()) all.push_back(laid_out(std::move(m)));
+    return all;
   }();
-  const auto found = messages.find(id);
-  return found == messages.end() ? nullptr : &found->second;
+  static const std::array<const MavlinkMessage*, kIds> by_id = [] {
+    std::array<const MavlinkMessage*, kIds> places{};
+    for (const MavlinkMessage& m : messages) places[m.id] = &m;
+    return places;
+  }();
+  return id < kIds ? by_id[id] : nullptr;
 }
 
 std::uint16_t mavlink_crc(std::string_view bytes, std::uint16_t crc) {
-  for (const char c : bytes) {
-    auto tmp = static_cast<std::uint8_t>(static_cast<std::uint8_t>(c) ^ (crc & 0xffU));
-    tmp = static_cast<std::uint8_t>(tmp ^ (tmp << 4U));
-    crc = static_cast<std::uint16_t>((crc >> 8U) ^ (tmp << 8U) ^ (tmp << 3U) ^ (tmp >> 4U));
-  }
+  // Polynomial 0x1021, the least significant bit first.
+  static constexpr std::array<std::uint16_t, 256> kTable = [] {
+    std::array<std::uint16_t, 256> table{};
+    for (unsigned byte = 0; byte < table.size(); ++byte) {
+      unsigned value = byte;
+      for (int bit = 0; bit < 8; ++bit) value = (value & 1U) != 0 ? value >> 1U ^ 0x8408U : value >> 1U;
+      table[byte] = static_cast<std::uint16_t>(value);
+    }
+    return table;
+  }();
+  for (const char c : bytes)
+    crc = static_cast<std::uint16_t>(crc >> 8U ^ kTable[(crc ^ static_cast<unsigned char>(c)) & 0xffU]);
   return crc;
 }
 

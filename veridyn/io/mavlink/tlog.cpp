@@ -69,6 +69,13 @@ struct Stream {
   std::vector<std::size_t> number;  ///< of each, in its sender's packets
 };
 
+/// All that one sender sent.
+struct Sent {
+  std::map<std::uint32_t, Stream> streams;  ///< by message
+  internal::SenderClock clock;
+  std::size_t packets = 0, motion = 0;
+};
+
 std::optional<double> own_stamp(const MavlinkMessage& message, const char* payload) {
   const MavlinkField& first = message.fields.front();
   if (first.name == "time_boot_ms") {
@@ -100,16 +107,14 @@ class TlogReader {
     walk();
     finish_damage();
     const Sender main = main_sender();
-    std::map<Sender, std::vector<double>> times;
-    for (const auto& [sender, clock] : clocks_) times[sender] = clock.times();
-    for (auto& [key, stream] : streams_) {
-      const auto& [sender, id] = key;
-      add_story(sender, main, stream, times[sender]);
-      if (id == kParameter || id == kText) continue;
-      add_topics(name_of(sender, main, stream), stream, times[sender]);
+    for (auto& [sender, sent] : senders_) {
+      const std::vector<double> times = sent.clock.times();
+      for (const auto& [id, stream] : sent.streams) {
+        add_story(sender, main, stream, times);
+        if (id != kParameter && id != kText) add_topics(name_of(sender, main, stream), stream, times);
+      }
+      if (sender == main) log_.restarts = sent.clock.restarts();
     }
-    const auto own = clocks_.find(main);
-    if (own != clocks_.end()) log_.restarts = own->second.restarts();
     if (const std::size_t count = log_.restarts.size(); count > 0)
       log_.damage.notes.push_back(fmt::format(
           "the vehicle started anew {} time{}; its times go on after what came before", count, count == 1 ? "" : "s"));
@@ -159,17 +164,21 @@ class TlogReader {
       ++unread_[packet.message];
       return;
     }
-    const Sender sender{packet.system, packet.component};
-    Stream& stream = streams_[{sender, packet.message}];
+    Sent& sent = sent_by({packet.system, packet.component});
+    Stream& stream = sent.streams[packet.message];
     stream.message = message;
     const std::size_t begin = stream.payloads.size();
     stream.payloads.append(packet.payload.substr(0, message->size));
     stream.payloads.resize(begin + message->size, '\0');
-    internal::SenderClock& clock = clocks_[sender];
-    stream.number.push_back(packets_[sender]++);
-    clock.add(1e-6 * (static_cast<double>(record.us) - static_cast<double>(*first_us_)),
-              own_stamp(*message, stream.payloads.data() + begin));
-    motion_[sender] += is_motion(packet.message) ? 1 : 0;
+    stream.number.push_back(sent.packets++);
+    sent.motion += is_motion(packet.message) ? 1 : 0;
+    sent.clock.add(1e-6 * (static_cast<double>(record.us) - static_cast<double>(*first_us_)),
+                   own_stamp(*message, stream.payloads.data() + begin));
+  }
+
+  Sent& sent_by(const Sender& sender) {
+    if (last_.second == nullptr || last_.first != sender) last_ = {sender, &senders_[sender]};
+    return *last_.second;
   }
 
   void finish_damage() {
@@ -191,9 +200,8 @@ class TlogReader {
   [[nodiscard]] Sender main_sender() const {
     Sender best;
     std::pair<std::size_t, std::size_t> most{0, 0};
-    for (const auto& [sender, packets] : packets_) {
-      const auto found = motion_.find(sender);
-      const std::pair<std::size_t, std::size_t> has{found == motion_.end() ? 0 : found->second, packets};
+    for (const auto& [sender, sent] : senders_) {
+      const std::pair<std::size_t, std::size_t> has{sent.motion, sent.packets};
       if (has > most) {
         most = has;
         best = sender;
@@ -276,7 +284,7 @@ class TlogReader {
     topic.doubled = ordered.doubled;
     topic.time = make_time_base(std::move(ordered.time));
     std::vector<GatherColumn> columns;
-    std::vector<bool> all_ones;
+    std::vector<bool> all_ones, extensions;
     for (const MavlinkField& from : message.fields) {
       if (is_stamp_field(from) || from.name == message.instance) continue;
       for (std::uint32_t i = 0; i < from.count; ++i) {
@@ -287,12 +295,22 @@ class TlogReader {
         topic.fields.push_back(std::move(field));
         columns.push_back({from.type, from.offset + i * from.element_size(), from.element_size()});
         all_ones.push_back(from.none_is_all_ones);
+        extensions.push_back(from.extension);
       }
     }
     std::vector<Column> values = gather(stream.payloads.data(), places, columns);
     for (std::size_t i = 0; i < values.size(); ++i)
       topic.fields[i].values = all_ones[i] ? without_all_ones(std::move(values[i])) : std::move(values[i]);
+    // An extension of zeros throughout was not sent: packets end before it.
+    std::size_t i = 0;
+    std::erase_if(topic.fields, [&](const LogField& field) { return extensions[i++] && all_zero(field.values); });
     log_.topics.push_back(std::move(topic));
+  }
+
+  static bool all_zero(const Column& column) {
+    for (std::size_t i = 0; i < column.size(); ++i)
+      if (column.number(i) != 0.0) return false;
+    return true;
   }
 
   /// NaN where all bits are set.
@@ -316,9 +334,8 @@ class TlogReader {
 
   std::string_view bytes_;
   Log& log_;
-  std::map<std::pair<Sender, std::uint32_t>, Stream> streams_;
-  std::map<Sender, internal::SenderClock> clocks_;
-  std::map<Sender, std::size_t> packets_, motion_;
+  std::map<Sender, Sent> senders_;
+  std::pair<Sender, Sent*> last_{};  ///< who sent the last packet
   std::map<std::uint32_t, std::size_t> unread_;
   std::optional<std::uint64_t> first_us_;
   std::size_t wrong_checksums_ = 0;
