@@ -85,6 +85,10 @@ set = "reference"                  # production-car sensors; "perfect"
 # [identify.uncertainty]
 # mass = "20 kg"                   # how well what is taken as known is known
 
+[validate]
+# segments = "all"                 # where an estimate of another drive is validated; "holdout"
+# open_loop = "10 min"             # and driven this long from steering and speed alone
+
 [track]
 # memory = "100 s"
 # false_alarm_interval = "36000 s"

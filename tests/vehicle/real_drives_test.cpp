@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "tests/support/folders.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/vehicle/vehicle_study.hpp"
 
@@ -61,6 +63,34 @@ TEST(RealDrives, HunterRunsAreReadWithTheirFrameAndStamps) {
     if (std::isfinite(p)) product += p;
   }
   EXPECT_GT(product, 0.0);
+}
+
+// The bicycle that the study's comment names, over whole runs: it predicts the yaw rate, and bands that know sensors
+// alone do not hold a car whose sensors have next to no noise.
+TEST(RealDrives, HunterIsDrivenOpenLoopOverWholeRuns) {
+  if (!data_is_there()) GTEST_SKIP() << "the shared data are not here";
+  Progress silent;
+  VehicleStudy drive = read_study(Study::load(study_file("hunter_se.toml")), silent);
+  drive.open_loop.times.duration_s = 600.0;
+  drive.validate_on_holdout_only = true;
+  estimation::Estimate estimate;
+  estimate.covariance = Eigen::MatrixXd::Zero(3, 3);
+  for (const auto& [name, value] : {std::pair{"C_f", 12.7}, std::pair{"C_r", 516.0}, std::pair{"I_z", 0.0726}})
+    estimate.parameters.push_back({.name = name, .value = value});
+  const auto driven = [&] { return validate(drive, estimate, silent); };
+  const VehicleAnalysis sure = driven();
+  EXPECT_GT(sure.open_loop.forecast_s, 150.0);
+  ASSERT_EQ(sure.open_loop.states.size(), 1u) << "no accelerometer is recorded";
+  const estimation::OpenLoopState& yaw_rate = sure.open_loop.states[0];
+  EXPECT_LT(yaw_rate.normalised_rmse, 0.2);
+  EXPECT_LT(yaw_rate.inside, 0.5);
+  EXPECT_NEAR(sure.estimate.validation.at("open_loop.yaw_rate").rmse, yaw_rate.fit.rmse, 1e-12);
+  const auto horizon = std::ranges::find(sure.estimate.evidence, "open loop horizon", &estimation::Evidence::name);
+  ASSERT_NE(horizon, sure.estimate.evidence.end());
+  EXPECT_EQ(horizon->outcome, estimation::Outcome::kCare) << horizon->text;
+  estimate.fit["yaw_rate.rmse"] = yaw_rate.fit.rmse * kDegree;
+  const VehicleAnalysis widened = driven();
+  EXPECT_GT(widened.open_loop.states[0].inside, 0.9);
 }
 
 }  // namespace

@@ -414,6 +414,11 @@ TEST(DriveOpenLoop, SaysWhyNothingWasDrivenAndIsSilentWhereNothingIsAskedFor) {
       drive.driven(p, estimate_of({{"C_f", p.C_f}, {"C_r", p.C_r}}), {.times = {.duration_s = 20.0}});
   EXPECT_FALSE(no_inertia.available());
   EXPECT_THAT(no_inertia.text, HasSubstr("has no I_z"));
+  EXPECT_TRUE(drive
+                  .driven(p, estimate_of({{"C_f", p.C_f}, {"C_r", p.C_r}}), {.times = {.duration_s = 20.0}},
+                          OpenLoopUse::kHoldout)
+                  .available())
+      << "an inertia that was not estimated is the study's";
   EXPECT_TRUE(open_loop_evidence(no_inertia).empty());
   Drive unused = drive;
   unused.segments.holdout.clear();

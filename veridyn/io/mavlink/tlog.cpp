@@ -59,7 +59,10 @@ std::optional<Received> record_at(std::string_view bytes) {
 /// Who sends: a component of a system.
 struct Sender {
   std::uint8_t system = 0, component = 0;
-  friend auto operator<=>(const Sender&, const Sender&) = default;
+  friend bool operator==(const Sender&, const Sender&) = default;
+  friend bool operator<(const Sender& a, const Sender& b) {
+    return std::tie(a.system, a.component) < std::tie(b.system, b.component);
+  }
 };
 
 /// All packets of one message of one sender, their payloads one after the other, each with all of its bytes.

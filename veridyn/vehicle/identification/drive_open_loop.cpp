@@ -45,9 +45,25 @@ Spans spans_of(const DriveSegments& segments, OpenLoopUse use) {
   return spans;
 }
 
+/// Whether a bias changes anything that is compared.
+bool acts_on(DriveUnknown bias, DriveStructure structure, const DriveSignals& signals) {
+  switch (bias) {
+    case DriveUnknown::kAccelYBias:
+      return signals[DriveSignal::kAccelY].available();
+    case DriveUnknown::kRollBias:
+      return has_roll(structure) && signals[DriveSignal::kRoll].available();
+    case DriveUnknown::kRollRateBias:
+      return has_roll(structure) && signals[DriveSignal::kRollRate].available();
+    default:
+      return true;
+  }
+}
+
 /// The model with every parameter fixed, and the biases that each window has of its own.
 EstimatedDriveModel fixed_model(const DriveOpenLoopProblem& problem, const DriveOpenLoopOptions& options) {
   EstimatedDriveModel out = estimated_drive_model(problem.estimate, problem.vehicle, problem.model);
+  // What identification of this drive did not estimate it has kept as the study gives it.
+  if (problem.use == OpenLoopUse::kHoldout && !problem.estimate.parameters.empty()) out.missing.clear();
   DriveModelOptions& model = out.options;
   model.free.fill(false);
   model.finer_steps = kFinerSteps;
@@ -55,9 +71,7 @@ EstimatedDriveModel fixed_model(const DriveOpenLoopProblem& problem, const Drive
     model.start[u] = kNaN;
   model.offsets = options.offsets.value_or(std::vector<DriveUnknown>());
   for (const DriveUnknown bias : kDriveBiases) {
-    const bool of_roll = bias == DriveUnknown::kRollBias || bias == DriveUnknown::kRollRateBias;
-    const DriveSignal signal = bias == DriveUnknown::kRollBias ? DriveSignal::kRoll : DriveSignal::kRollRate;
-    const bool acts = !of_roll || (has_roll(model.structure) && problem.signals[signal].available());
+    const bool acts = acts_on(bias, model.structure, problem.signals);
     const estimation::Parameter* known = problem.estimate.find(std::string(kDriveUnknownNames[bias]));
     if (acts && problem.use == OpenLoopUse::kHoldout && known != nullptr && std::isfinite(known->value)) {
       model.start[bias] = known->value;
