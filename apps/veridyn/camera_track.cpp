@@ -12,6 +12,7 @@
 
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/output_folder.hpp"
+#include "apps/veridyn/pose_sender.hpp"
 #include "veridyn/camera/calibration/calibration_file.hpp"
 #include "veridyn/camera/tracking/camera_device.hpp"
 #include "veridyn/camera/tracking/car_tracker.hpp"
@@ -20,39 +21,12 @@
 #include "veridyn/camera/tracking/video_frames.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/study.hpp"
-#include "veridyn/live/camera/pose_packet.hpp"
-#include "veridyn/live/camera/pose_server.hpp"
-#include "veridyn/live/rig/live_study.hpp"
+#include "veridyn/live/time/clock.hpp"
 
 namespace veridyn::app {
 namespace {
 
 using namespace veridyn::camera;
-
-/// Sends the poses of single frames over TCP.
-class PoseSender {
- public:
-  /// @param address empty: to nobody
-  explicit PoseSender(const std::string& address) {
-    if (!address.empty()) server_.emplace(live::parse_address(address, "--serve"), "--serve");
-  }
-  [[nodiscard]] bool sends() const { return server_.has_value(); }
-  /// @param stamp  of the frame
-  void send(const TrackedPose& pose, live::Nanoseconds stamp) {
-    if (!server_) return;
-    ++sequence_;
-    if (!pose.measured) return;
-    const live::PosePacket packet = live::encode({.sequence = sequence_,
-                                                  .stamp = stamp,
-                                                  .pose = pose.measured->pose,
-                                                  .covariance = pose.measured->covariance()});
-    server_->send({packet.data(), packet.size()});
-  }
-
- private:
-  std::optional<live::PoseServer> server_;
-  std::uint32_t sequence_ = 0;
-};
 
 /// Follows the car from picture to picture, by its markers or by its silhouette.
 class Follower {
@@ -179,10 +153,11 @@ int track(const Arguments& arguments) {
   // The library behind OpenCV writes lines of its own about files that are no video; -8 is its "quiet".
   ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
   TerminalProgress progress = progress_of(common);
-  PoseSender sender(arguments.text("--serve"));
+  PoseSender sender(arguments.text("--serve"), "--serve");
   std::optional<CameraTimes> times;
   std::error_code ignored;
-  const bool is_device = std::filesystem::is_character_file(source, ignored) || source.string().starts_with("/dev/video");
+  const bool is_device =
+      std::filesystem::is_character_file(source, ignored) || source.string().starts_with("/dev/video");
   if (is_device) {
     CameraDevice device(source, asked);
     progress.stage(arguments.number("--seconds") > 0.0 ? "following the car" : "following the car; Ctrl-C ends it");

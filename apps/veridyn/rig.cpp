@@ -3,6 +3,7 @@
 
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/domains.hpp"
+#include "apps/veridyn/rig_camera.hpp"
 #include "apps/veridyn/rig_car.hpp"
 #include "apps/veridyn/rig_test.hpp"
 #include "veridyn/core/error.hpp"
@@ -173,6 +174,7 @@ Command rig_command() {
            .run = rig_platform},
           rig_test_command(),
           rig_car_command(),
+          rig_camera_command(),
           rig_wheel_command()}};
 }
 

@@ -17,9 +17,11 @@
 #include "veridyn/io/packets/known_packets.hpp"
 #include "veridyn/io/packets/packet_decoder.hpp"
 #include "veridyn/io/tables/table.hpp"
+#include "veridyn/live/camera/pose_client.hpp"
 #include "veridyn/live/camera/pose_packet.hpp"
 #include "veridyn/live/camera/pose_server.hpp"
 #include "veridyn/live/link/udp_socket.hpp"
+#include "veridyn/live/virtual/motion_packet.hpp"
 #include "veridyn/numerics/random.hpp"
 #include "veridyn/numerics/rotation.hpp"
 
@@ -198,12 +200,64 @@ TEST_F(TeleoperationProgramTest, GoesFromPedalToPlatformToTheMotionThatACameraSa
   EXPECT_LT(speed, 0.3);
 }
 
+// What the virtual car says of itself comes out of pictures again, with its time.
+TEST_F(TeleoperationProgramTest, CameraOfTheRigSeesTheVirtualCarWhereItIs) {
+  PoseClient client(at(base_ + 3));
+  std::vector<std::string> seen = words({"rig", "camera", study_, "--json", "--video", (folder_ / "seen.avi").string(),
+                                         "--out", (folder_ / "camera").string()});
+  seen.insert(seen.end(), {"--set", "live.camera.view={x=[-3,3],y=[-2,2],width=640,height=480}"});
+  Process camera(seen, folder_ / "camera.txt");
+  ASSERT_TRUE(camera.says("sends poses", 20.0)) << camera.said();
+  UdpSocket truth = UdpSocket::connected(at(base_ + 2), "truth");
+  RealClock clock;
+  const Nanoseconds begin = clock.now();
+  const auto place = [&](Nanoseconds time) {
+    const double t = seconds(time - begin);
+    return Eigen::Vector3d(2.0 * std::cos(t), 1.2 * std::sin(t), std::remainder(t + 0.5 * kPi, 2.0 * kPi));
+  };
+  std::size_t received = 0;
+  std::uint32_t sequence = 0;
+  for (Nanoseconds now = begin; now < begin + 8 * kSecond && received < 20; now = clock.now()) {
+    const Eigen::Vector3d pose = place(now);
+    std::array<char, kMotionPacketBytes> packet{};
+    encode_motion({.sequence = sequence++,
+                   .time = seconds(now),
+                   .position = {pose(0), pose(1), 0.0},
+                   .attitude = Eigen::Quaterniond(Eigen::AngleAxisd(pose(2), Eigen::Vector3d::UnitZ()))},
+                  packet);
+    EXPECT_TRUE(truth.send({packet.data(), packet.size()}));
+    while (const auto datagram = client.next(now)) {
+      const CameraPose one = decode_pose(datagram->bytes).value();
+      Eigen::Vector3d off = one.pose - place(one.stamp);
+      off(2) = std::remainder(off(2), 2.0 * kPi);
+      EXPECT_LT(off.head<2>().norm(), 0.01);
+      EXPECT_LT(std::abs(off(2)), 0.05);
+      EXPECT_LT(one.stamp, now);
+      ++received;
+    }
+    clock.sleep_until(now + 10 * kMillisecond);
+  }
+  EXPECT_EQ(received, 20U);
+  camera.signal(SIGINT);
+  EXPECT_EQ(camera.wait(), 0) << camera.said();
+  // Its video is one that `veridyn camera track` follows, with its calibration.
+  const Outcome tracked =
+      run("camera track " + (folder_ / "seen.avi").string() + " --calibration " +
+          (folder_ / "camera/calibration.toml").string() +
+          " --set tracker.markers_x=[0.2,-0.16,-0.12] --set tracker.markers_y=[0,0.1,-0.08] --out " +
+          (folder_ / "tracked").string());
+  EXPECT_EQ(tracked.exit_code, 0) << tracked.text;
+  EXPECT_THAT(tracked.text, HasSubstr("frames: the car was recognised in"));
+}
+
 TEST_F(TeleoperationProgramTest, SaysInOneLineWhatIsWrongWithACamera) {
   const auto refused = [&](const std::string& set, const std::string& why) {
     expect_refusal("cue " + study_ + " --live --set " + set + out(), why);
   };
   refused("live.camera.address=nowhere", "live.camera.address: = 'nowhere' is no address");
   refused("live.camera.addres=127.0.0.1:6123", "live.camera.address");
+  expect_refusal("rig camera " + study_ + " --set live.car.truth=127.0.0.1:4130" + out(), "live.camera: is missing");
+  expect_refusal("rig camera " + study_ + " --set live.camera.address=127.0.0.1:6123" + out(), "has no truth = ");
   refused("'live.camera={address=\"127.0.0.1:6123\",fusion={gyro=-1}}'", "fusion");
   const std::string live = (test::source_folder() / "examples/studies/cueing/live.toml").string();
   expect_refusal("cue " + live + " --live --set live.camera.address=127.0.0.1:6123" + out(),

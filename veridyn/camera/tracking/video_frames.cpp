@@ -71,19 +71,38 @@ std::optional<VideoFrame> VideoFrames::next() {
   return frame;
 }
 
+struct VideoWriter::Writer {
+  std::filesystem::path path;
+  int width = 0, height = 0;
+  std::unique_ptr<void, void (*)(void*)> video{nullptr, nullptr};
+};
+
+VideoWriter::VideoWriter(std::filesystem::path path, int width, int height, double rate_Hz)
+    : writer_(std::make_unique<Writer>()) {
+  const VideoLibrary& library = video_library();
+  writer_->video = {library.open_writer(path.c_str(), width, height, rate_Hz), library.close_writer};
+  if (writer_->video == nullptr) throw InputError(path.string(), "cannot be written as a video");
+  writer_->path = std::move(path);
+  writer_->width = width;
+  writer_->height = height;
+}
+
+VideoWriter::~VideoWriter() = default;
+VideoWriter::VideoWriter(VideoWriter&&) noexcept = default;
+VideoWriter& VideoWriter::operator=(VideoWriter&&) noexcept = default;
+
+void VideoWriter::add(const GreyImage& image) {
+  Writer& w = *writer_;
+  if (image.width != w.width || image.height != w.height)
+    throw InputError(w.path.string(), "pictures of a video must have one size");
+  if (!video_library().write(w.video.get(), image.pixels.data()))
+    throw InputError(w.path.string(), "cannot be written as a video");
+}
+
 void write_video(const std::filesystem::path& path, std::span<const GreyImage> images, double rate_Hz) {
   if (images.empty()) throw InputError(path.string(), "no pictures for a video");
-  const int width = images.front().width, height = images.front().height;
-  const VideoLibrary& library = video_library();
-  const std::unique_ptr<void, void (*)(void*)> writer{library.open_writer(path.c_str(), width, height, rate_Hz),
-                                                      library.close_writer};
-  if (writer == nullptr) throw InputError(path.string(), "cannot be written as a video");
-  for (const GreyImage& image : images) {
-    if (image.width != width || image.height != height)
-      throw InputError(path.string(), "pictures of a video must have one size");
-    if (!library.write(writer.get(), image.pixels.data()))
-      throw InputError(path.string(), "cannot be written as a video");
-  }
+  VideoWriter writer(path, images.front().width, images.front().height, rate_Hz);
+  for (const GreyImage& image : images) writer.add(image);
 }
 
 }  // namespace veridyn::camera

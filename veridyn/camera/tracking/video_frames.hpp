@@ -39,7 +39,24 @@ class VideoFrames {
   std::unique_ptr<Reader> reader_;
 };
 
-/// Writes pictures of equal size as a video (Motion JPEG in AVI), for tests and the virtual rig.
+/// Writes a video picture by picture (Motion JPEG in AVI).
+class VideoWriter {
+ public:
+  /// @throws InputError when it cannot be written
+  VideoWriter(std::filesystem::path path, int width, int height, double rate_Hz);
+  ~VideoWriter();
+  VideoWriter(VideoWriter&&) noexcept;
+  VideoWriter& operator=(VideoWriter&&) noexcept;
+
+  /// @throws InputError when it cannot be written or is of another size
+  void add(const GreyImage& image);
+
+ private:
+  struct Writer;
+  std::unique_ptr<Writer> writer_;
+};
+
+/// The same of pictures that are all there.
 /// @throws InputError when it cannot be written
 void write_video(const std::filesystem::path& path, std::span<const GreyImage> images, double rate_Hz);
 

@@ -177,6 +177,8 @@ LiveStudy read_live_study(const Study& study) {
       const StudyTable camera = live.table("camera");
       s.camera = CameraStudy{parse_address(camera.text("address"), camera.place("address"))};
       camera.accept("fusion");  // read by whoever fuses
+      camera.accept("view");    // by the virtual camera, as the next
+      camera.accept("tracker");
     }
     if (live.has("stop")) s.telemetry = parse_address(live.text("stop"), live.place("stop"));
   } else {

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "apps/veridyn/command.hpp"
+
+namespace veridyn::app {
+
+/// `veridyn rig camera`: a camera above the virtual car.
+[[nodiscard]] Command rig_camera_command();
+
+}  // namespace veridyn::app
