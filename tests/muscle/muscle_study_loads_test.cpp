@@ -24,6 +24,7 @@ namespace {
 using test::read_muscle_study;
 using test::study_error;
 using testing::AllOf;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
@@ -125,6 +126,17 @@ TEST_F(StudyLoads, StaticOptimizationLeavesThePelvisToTheGround) {
     EXPECT_NEAR(r.reactions->force(i, 1), r.trajectory.reserve(i, 2), 1e-6 * weight_);
     EXPECT_NEAR(r.reactions->moment(i, 5), r.trajectory.reserve(i, 3), 1e-6 * weight_);
   }
+}
+
+TEST_F(StudyLoads, ReservesThatCarryTheModelAreNamed) {
+  // Without the ground's force, and with it twice.
+  EXPECT_THAT(run(kLegs + "method = \"static optimization\"\n").warnings,
+              ElementsAre(AllOf(HasSubstr("the reserve of 'pelvis_ty' carries up to"),
+                                HasSubstr("external loads are missing or do not fit"))));
+  EXPECT_THAT(run("[subject]\nmodel = \"legs\"\nwithout_contact = false\n[motion]\nfile = \"states.sto\"\n" + kLoads +
+                  "method = \"static optimization\"\n")
+                  .warnings,
+              ElementsAre(HasSubstr("the reserve of 'pelvis_ty' carries up to")));
 }
 
 TEST_F(StudyLoads, ReactionsOfTheSimulationAreThoseOfTheRecording) {

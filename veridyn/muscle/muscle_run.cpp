@@ -180,6 +180,8 @@ MuscleResult run_study(const MuscleStudy& study, Progress& progress) {
   if (study.method == MuscleMethod::kForward || study.method == MuscleMethod::kComputedMuscleControl) {
     for (std::string& warning : range_warnings(study, result.trajectory)) result.warnings.push_back(std::move(warning));
   }
+  std::string carried = lifting_reserve_warning(*study.system, result.trajectory.reserve);
+  if (!carried.empty()) result.warnings.push_back(std::move(carried));
   for (const WrapBandVisit& visit : wrap_band_visits(*study.system, result.trajectory.time, result.trajectory.q))
     result.warnings.push_back(wrap_band_text(*study.system, visit));
   result.warnings.insert(result.warnings.begin(), study.warnings.begin(), study.warnings.end());

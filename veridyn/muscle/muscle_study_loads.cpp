@@ -90,9 +90,9 @@ ReadFromFiles<std::shared_ptr<const ExternalLoads>> read_external_loads(const St
     }
     add_external_loads({&source, 1}, data ? &*data : nullptr, model, low_pass_Hz, loads);
   }
-  if (!loads.empty()) read.value = std::make_shared<const ExternalLoads>(std::move(loads));
-  if (loads.empty() && !read.value && motion.has("external_low_pass") && !motion.has("external_loads"))
+  if (loads.empty() && motion.has("external_low_pass") && !motion.has("external_loads"))
     motion.fail("external_low_pass", "has no meaning without external loads");
+  if (!loads.empty()) read.value = std::make_shared<const ExternalLoads>(std::move(loads));
   return read;
 }
 

@@ -13,22 +13,6 @@
 namespace veridyn::muscle {
 namespace {
 
-/// The free coordinate that translates everything against gravity; -1: none.
-int lifting_coordinate(const MusculoskeletalSystem& system) {
-  const Model& model = system.model();
-  if (!(model.gravity.norm() > 0.0)) return -1;
-  const Eigen::Vector3d up = -model.gravity.normalized();
-  for (const int c : system.reduction().free()) {
-    const Joint& joint = model.joints[at(model.coordinates[at(c)].joint)];
-    if (joint.parent != 0) continue;
-    for (const TransformAxis& axis : joint.translation) {
-      if (axis.coordinate != c || !axis.function.is_linear() || axis.function.is_constant()) continue;
-      if ((joint.parent_frame.rotation * axis.axis).dot(up) > 0.99) return c;
-    }
-  }
-  return -1;
-}
-
 double root_mean_square(const Eigen::VectorXd& v) {
   return v.size() > 0 ? std::sqrt(v.squaredNorm() / static_cast<double>(v.size())) : 0.0;
 }
@@ -79,13 +63,33 @@ double distance_from_body(const MusculoskeletalSystem& system, const ExternalLoa
   return *middle;
 }
 
+double weight_of(const Model& model) {
+  double weight = 0.0;
+  for (std::size_t b = 1; b < model.bodies.size(); ++b) weight += model.bodies[b].mass * model.gravity.norm();
+  return weight;
+}
+
 }  // namespace
+
+int lifting_coordinate(const MusculoskeletalSystem& system) {
+  const Model& model = system.model();
+  if (!(model.gravity.norm() > 0.0)) return -1;
+  const Eigen::Vector3d up = -model.gravity.normalized();
+  for (const int c : system.reduction().free()) {
+    const Joint& joint = model.joints[at(model.coordinates[at(c)].joint)];
+    if (joint.parent != 0) continue;
+    for (const TransformAxis& axis : joint.translation) {
+      if (axis.coordinate != c || !axis.function.is_linear() || axis.function.is_constant()) continue;
+      if ((joint.parent_frame.rotation * axis.axis).dot(up) > 0.99) return c;
+    }
+  }
+  return -1;
+}
 
 ExternalLoadFit external_load_fit(const MusculoskeletalSystem& system, const MotionAnalysis& analysis) {
   ExternalLoadFit fit;
   fit.coordinate = lifting_coordinate(system);
-  for (std::size_t b = 1; b < system.model().bodies.size(); ++b)
-    fit.weight += system.model().bodies[b].mass * system.model().gravity.norm();
+  fit.weight = weight_of(system.model());
   if (fit.coordinate < 0 || analysis.external.size() == 0) return fit;
   const Eigen::VectorXd loads = analysis.external.col(fit.coordinate), left = analysis.moment.col(fit.coordinate);
   const Eigen::VectorXd needed = left + loads;
@@ -123,6 +127,18 @@ std::vector<std::string> external_load_warnings(const MusculoskeletalSystem& sys
           load.name, distance, system.model().bodies[at(load.body)].name));
   }
   return warnings;
+}
+
+std::string lifting_reserve_warning(const MusculoskeletalSystem& system, const estimation::RowMatrix& reserve) {
+  const int c = lifting_coordinate(system);
+  const double weight = weight_of(system.model());
+  if (c < 0 || reserve.size() == 0 || !(weight > 0.0)) return {};
+  const double greatest = reserve.col(c).cwiseAbs().maxCoeff();
+  if (!(greatest > 0.05 * weight)) return {};
+  return fmt::format(
+      "the reserve of '{}' carries up to {:.3g} N ({:.3g} % of the weight), which only the surroundings "
+      "could: external loads are missing or do not fit",
+      system.model().coordinates[at(c)].name, greatest, 100.0 * greatest / weight);
 }
 
 }  // namespace veridyn::muscle

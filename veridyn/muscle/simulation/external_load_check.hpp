@@ -19,6 +19,9 @@ struct ExternalLoadFit {
   double factor = 1.0;   ///< by which the loads would have to be multiplied
 };
 
+/// The free coordinate that translates the whole model against gravity; -1: it has none.
+[[nodiscard]] int lifting_coordinate(const MusculoskeletalSystem& system);
+
 /// @param analysis of `motion` with its loads.
 [[nodiscard]] ExternalLoadFit external_load_fit(const MusculoskeletalSystem& system, const MotionAnalysis& analysis);
 
@@ -28,5 +31,10 @@ struct ExternalLoadFit {
 [[nodiscard]] std::vector<std::string> external_load_warnings(const MusculoskeletalSystem& system,
                                                               const ExternalLoads& loads,
                                                               const MotionAnalysis& analysis);
+
+/// Of reserves (rows x coordinates) that carry the model where nothing but the surroundings could: more than a
+/// twentieth of the weight at the coordinate that lifts it. Empty when they do not.
+[[nodiscard]] std::string lifting_reserve_warning(const MusculoskeletalSystem& system,
+                                                  const estimation::RowMatrix& reserve);
 
 }  // namespace veridyn::muscle
