@@ -33,6 +33,8 @@ void check_camera(const Study& study) {
     study.root().table("live").fail("camera", "needs a program with OpenCV, which this one was built without");
 }
 
+std::string camera_delay_toml(const FusedRun& /*run*/) { return {}; }
+
 std::optional<FusedRun> fused_run(const Study& /*study*/, const live::LiveReplay& /*run*/) { return std::nullopt; }
 
 }  // namespace veridyn::app

@@ -1,6 +1,9 @@
 // The camera in a live run: its poses fused with the car's inertial sensors.
 #include "apps/veridyn/camera_run.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <vector>
 
 #include "veridyn/camera/fusion/fused_drive.hpp"
@@ -15,6 +18,16 @@ FusionOptions fusion_of(const Study& study) {
 }
 
 }  // namespace
+
+std::string camera_delay_toml(const FusedRun& run) {
+  // The shortest way, beyond which the offset counts, is another one in each run, by some milliseconds.
+  constexpr double kBetweenRuns_s = 0.005;
+  return fmt::format(
+      "\n# How late the camera's stamps are beyond the shortest way, found with a standard deviation of {:.6f} s: a "
+      "study "
+      "that\n# has this begins with it.\n[live.camera.fusion]\noffset = {:.6f}\noffset_sigma = {:.6f}\n",
+      run.sigma_offset, run.offset, std::hypot(run.sigma_offset, kBetweenRuns_s));
+}
 
 void check_camera(const Study& study) {
   if (!study.root().table("live").has("camera")) return;

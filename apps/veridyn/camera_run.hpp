@@ -16,6 +16,8 @@ struct FusedRun {
   double offset = 0.0, sigma_offset = 0.0;  ///< of the camera's stamps beyond what the shortest way explains [s]
 };
 
+/// What was found of the camera's stamps, as keys of a study that begins with it.
+[[nodiscard]] std::string camera_delay_toml(const FusedRun& run);
 /// Reads `[live.camera.fusion]` where the study has a camera. @throws InputError for what is wrong in it, and in a
 /// program without the camera
 void check_camera(const Study& study);

@@ -147,11 +147,11 @@ int report_run(const CommonOptions& options, const RunRecord& record, OutputFold
   const cueing::CueingResult score = scored(r);
   folder.write("platform.csv", motion_csv(r));
   folder.write("packets.csv", packets_csv(r));
+  const auto fused = fused_run(Study::parse(recorded.head.study, recorded.head.study_name), r);
   if (r.car) {
     folder.write("drive.csv", DriveTable::header() + r.car->drive.take_lines());
-    folder.write("delays.toml", delays_toml(r));
+    folder.write("delays.toml", delays_toml(r) + (fused ? camera_delay_toml(*fused) : ""));
   }
-  const auto fused = fused_run(Study::parse(recorded.head.study, recorded.head.study_name), r);
   if (fused) folder.write("motion.csv", fused->motion_csv);
   folder.write("report.html", report::to_html(report::live_report(r, score, notes, program_name())));
   const std::string files = fmt::format("{}", fmt::join(folder.files(), ", "));

@@ -14,6 +14,7 @@
 #include "tests/apps/process.hpp"
 #include "tests/apps/program.hpp"
 #include "tests/support/folders.hpp"
+#include "veridyn/core/study.hpp"
 #include "veridyn/io/packets/known_packets.hpp"
 #include "veridyn/io/packets/packet_decoder.hpp"
 #include "veridyn/io/tables/table.hpp"
@@ -166,6 +167,10 @@ TEST_F(TeleoperationProgramTest, GoesFromPedalToPlatformToTheMotionThatACameraSa
   const std::string delays = read_file(folder_ / "run/delays.toml");
   for (const char* stage : {"_input", "_line", "_car", "_motion", "_answer", ""})
     EXPECT_THAT(delays, HasSubstr(std::string("pedal_to_platform") + stage + " = ["));
+  // And the camera's, as keys that a study takes.
+  const Study found = Study::parse(delays, "delays.toml");
+  const double offset = found.root().table("live").table("camera").table("fusion").number("offset", "s");
+  EXPECT_NEAR(offset, json["camera"]["offset_s"].get<double>(), 1e-6);
 
   // What came over the line is counted, too.
   const std::string packets = read_file(folder_ / "run/packets.csv");
