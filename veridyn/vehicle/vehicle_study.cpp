@@ -164,8 +164,8 @@ VehicleAnalysis identify(const VehicleStudy& study, Progress& progress) {
   out.identification = identify_parameters(
       {out.signals, out.segments, study.vehicle, study.signals, study.identify, recording}, progress);
   out.interrupted = out.identification.interrupted;
-  out = driven_open_loop(std::move(out), OpenLoopUse::kHoldout, by_motion(out.identification, study.subject_name),
-                         study, progress);
+  const estimation::Estimate found = by_motion(out.identification, study.subject_name);
+  out = driven_open_loop(std::move(out), OpenLoopUse::kHoldout, found, study, progress);
   std::vector<std::string> warnings = warnings_of(study, out.signals);
   if (!out.signals.gravity_removed && out.signals[DriveSignal::kAccelY].available() &&
       !study.identify.model.free[DriveUnknown::kAccelYScale] && !has_roll(out.identification.structure)) {
