@@ -507,7 +507,7 @@ DriveWhitening DriveParametricModel::whitening(const Eigen::VectorXd& theta) con
 }
 
 Eigen::VectorXd DriveParametricModel::steering_noise_sigmas(const Eigen::VectorXd& theta) const {
-  const Eigen::VectorXd none = Eigen::VectorXd::Zero(signed_index(compared_.size()));
+  Eigen::VectorXd none = Eigen::VectorXd::Zero(signed_index(compared_.size()));
   if (!(steer_sigma_ > 0.0) || !(steer_error_share_ > 0.0) || segments_.empty()) return none;
   const SpeedRange range = speeds();
   const DriveNoise noise = noise_at(0.5 * (range.slowest + range.fastest), theta);
