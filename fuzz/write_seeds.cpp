@@ -35,6 +35,8 @@ int main(int count, char** arguments) {
     std::string twice = "\x07time,x\n";
     for (int i = 0; i < 24; ++i) twice += std::to_string(i % 12) + ",1\n";
     write("csv", twice, "restart");
+    write("unit_words", "degrees per sec^2");
+    write("unit_words", "m/s\xC2\xB2", "utf8");
     write("number_table", "# of three runs\nrun,alpha[rad],CL,day\n1,0.1,0.4,Mon\n1,0.2,NaN,Mon\n2,-1e-1,,Tue\n");
     write("mat", veridyn::testing::small_mat());
     write("storage",
