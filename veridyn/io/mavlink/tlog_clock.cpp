@@ -1,6 +1,7 @@
 #include "veridyn/io/mavlink/tlog_clock.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace veridyn::io::internal {
 namespace {
@@ -11,6 +12,9 @@ constexpr double kRestart_s = 10.0;
 constexpr double kSince1970_s = 1e9;
 /// A message without a stamp is not so long after one that has one [s].
 constexpr double kLongestGuess_s = 5.0;
+
+/// To the nanosecond: sums of large stamps and delays hold no more, and a zero would have a sign.
+double rounded(double t) { return 1e-9 * std::round(1e9 * t) + 0.0; }
 
 }  // namespace
 
@@ -44,7 +48,7 @@ std::vector<double> SenderClock::times() const {
   std::vector<double> times;
   times.reserve(packets_.size());
   for (const Packet& p : packets_)
-    times.push_back(p.kind < 0 ? p.time : p.time + clocks_[p.kind].epochs[p.epoch].delay);
+    times.push_back(rounded(p.kind < 0 ? p.time : p.time + clocks_[p.kind].epochs[p.epoch].delay));
   return times;
 }
 
@@ -54,7 +58,7 @@ std::vector<double> SenderClock::restarts() const {
     if (clock.epochs.size() <= moments.size() + 1) continue;
     moments.clear();
     for (std::size_t i = 1; i < clock.epochs.size(); ++i)
-      moments.push_back(clock.epochs[i].first + clock.epochs[i].delay);
+      moments.push_back(rounded(clock.epochs[i].first + clock.epochs[i].delay));
   }
   return moments;
 }
