@@ -14,7 +14,10 @@ namespace {
 using namespace veridyn::camera;
 
 FusionOptions fusion_of(const Study& study) {
-  return FusionOptions::read(study.root().table("live").table("camera").table_or_empty("fusion"));
+  const StudyTable table = study.root().table("live").table("camera").table_or_empty("fusion");
+  FusionOptions options = FusionOptions::read(table);
+  table.finish();
+  return options;
 }
 
 }  // namespace

@@ -61,6 +61,7 @@ class TruthReceiver {
 camera::TrackerOptions tracker_of(const StudyTable& table) {
   camera::TrackerOptions options = camera::TrackerOptions::read(table);
   if (!table.has("markers_x")) options.layout.markers = kMarkers.markers;
+  table.finish();
   return options;
 }
 
@@ -75,7 +76,9 @@ int rig_camera(const Arguments& arguments) {
     live.fail("car", "has no truth = \"ADDRESS\", where the virtual car says where it is");
   const StudyTable table = live.table("camera");
   const camera::TrackerOptions tracking = tracker_of(table.table_or_empty("tracker"));
-  const camera::VirtualCameraOptions view = camera::VirtualCameraOptions::read(table.table_or_empty("view"));
+  const StudyTable view_table = table.table_or_empty("view");
+  const camera::VirtualCameraOptions view = camera::VirtualCameraOptions::read(view_table);
+  view_table.finish();
   OutputFolder folder(common.out);
   camera::VirtualCamera seen(view, tracking.layout, study.cueing.seed);
   camera::CarTracker tracker(seen.calibration(), tracking);

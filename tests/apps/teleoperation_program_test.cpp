@@ -263,7 +263,12 @@ TEST_F(TeleoperationProgramTest, SaysInOneLineWhatIsWrongWithACamera) {
   refused("live.camera.addres=127.0.0.1:6123", "live.camera.address");
   expect_refusal("rig camera " + study_ + " --set live.car.truth=127.0.0.1:4130" + out(), "live.camera: is missing");
   expect_refusal("rig camera " + study_ + " --set live.camera.address=127.0.0.1:6123" + out(), "has no truth = ");
+  const std::string both = study_ + " --set live.car.truth=127.0.0.1:4130 --set live.camera.address=127.0.0.1:6123";
+  expect_refusal("rig camera " + both + " --set live.camera.view={wdth=4}" + out(), "wdth");
+  expect_refusal("rig camera " + both + " --set live.camera.view={x=[-50,50]}" + out(),
+                 "px apart; must be at least 12");
   refused("'live.camera={address=\"127.0.0.1:6123\",fusion={gyro=-1}}'", "fusion");
+  refused("'live.camera={address=\"127.0.0.1:6123\",fusion={gyr=0.1}}'", "gyr");
   const std::string live = (test::source_folder() / "examples/studies/cueing/live.toml").string();
   expect_refusal("cue " + live + " --live --set live.camera.address=127.0.0.1:6123" + out(),
                  "is for telemetry = \"car\"");

@@ -7,6 +7,7 @@
 
 #include "tests/report/shown.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::report {
 namespace {
@@ -145,7 +146,7 @@ TEST(AircraftReproduction, HidesWildValuesOfATrackerAndShadesWhereItIsExcited) {
   EXPECT_TRUE(std::isnan(line.y[0])) << "50 where the truth is 0.2 at most";
   EXPECT_EQ(line.y[1], 0.11);
   ASSERT_TRUE(line.band.has_value());
-  EXPECT_NEAR(line.band->low[1], 0.11 - 0.0196, 1e-12);
+  EXPECT_NEAR(line.band->low[1], 0.11 - 0.01 * numerics::kNormal95, 1e-12);
   ASSERT_EQ(figure.spans.size(), 1U);
   EXPECT_EQ(figure.spans[0].from, 10.0);
   EXPECT_EQ(figure.spans[0].to, 20.0);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::report {
 namespace {
@@ -58,8 +59,8 @@ TEST(FollowedLine, HidesWhatIsWildBeforeThereAreData) {
   EXPECT_TRUE(std::isnan(line.band->low[0]));
   EXPECT_EQ(line.band->low[2], -4.0);
   EXPECT_EQ(line.band->high[2], 4.0);
-  EXPECT_NEAR(line.band->low[3], 1.0 - 0.196, 1e-12);
-  EXPECT_NEAR(line.band->high[3], 1.0 + 0.196, 1e-12);
+  EXPECT_NEAR(line.band->low[3], 1.0 - 0.1 * numerics::kNormal95, 1e-12);
+  EXPECT_NEAR(line.band->high[3], 1.0 + 0.1 * numerics::kNormal95, 1e-12);
 }
 
 }  // namespace
