@@ -157,11 +157,11 @@ function(veridyn_embed_texts output header namespace function)
 endfunction()
 
 # veridyn_module_tests(NAME [DEPENDS ...] [WITHOUT a_test.cpp ...])
-# One test binary a module, veridyn_NAME_tests, of all sources below the folder; its cases are registered with CTest under the
-# label NAME; those of suites named *Soak* are long-running campaigns under the label `soak`, which `make soak` runs. Those
-# that tests/long_tests.txt names have the label `NAME.long` instead, and do not run under the sanitizers. Each takes a core
-# of those that `make test` distributes, but for those that tests/waiting_tests.txt names; nothing runs beside those of
-# tests/lone_tests.txt.
+# One test binary a module, veridyn_NAME_tests, of all sources below the folder; each suite of it is a test of CTest, NAME.Suite,
+# under the label NAME (VeridynSuites.cmake). Tests of their own are cases of suites named *Soak*, long-running campaigns under
+# the label `soak`, which `make soak` runs; those that tests/long_tests.txt names, label `NAME.long`, which `make long` runs
+# and the sanitizers do not; those that wait (tests/waiting_tests.txt), beside what takes one of the cores that `make test`
+# distributes; and those that nothing runs beside (tests/lone_tests.txt).
 function(veridyn_module_tests name)
   cmake_parse_arguments(ARG "" "" "DEPENDS;WITHOUT" ${ARGN})
   set(target veridyn_${name}_tests)
@@ -171,7 +171,7 @@ function(veridyn_module_tests name)
   if(TARGET Veridyn::${name})
     target_link_libraries(${target} PRIVATE Veridyn::${name})
   endif()
-  target_link_libraries(${target} PRIVATE ${ARG_DEPENDS} veridyn_test_build)
+  target_link_libraries(${target} PRIVATE ${ARG_DEPENDS} veridyn_test_build veridyn_test_main)
   target_precompile_headers(${target} REUSE_FROM veridyn_test_headers)
   veridyn_compile_together(${target} 24)
   set(lists ${PROJECT_SOURCE_DIR}/tests/long_tests.txt ${PROJECT_SOURCE_DIR}/tests/waiting_tests.txt
@@ -180,26 +180,34 @@ function(veridyn_module_tests name)
   file(STRINGS ${PROJECT_SOURCE_DIR}/tests/long_tests.txt long REGEX "^[^#]")
   list(TRANSFORM long REPLACE "(.+)" "*\\1*")
   list(JOIN long ":" long)
-  gtest_discover_tests(${target} TEST_FILTER -*Soak*:${long} TEST_LIST ${target}_short DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${name} TIMEOUT 600)
+  foreach(list waiting lone)
+    file(STRINGS ${PROJECT_SOURCE_DIR}/tests/${list}_tests.txt ${list} REGEX "^[^#]")
+    list(JOIN ${list} "|" ${list}_names)
+    list(TRANSFORM ${list} REPLACE "(.+)" "*\\1*")
+    list(JOIN ${list} ":" ${list})
+  endforeach()
+  set(alone ${waiting}:${lone})
+  gtest_discover_tests(${target} TEST_FILTER ${alone}-*Soak*:${long} TEST_LIST ${target}_alone DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${name} TIMEOUT 600)
   gtest_discover_tests(${target} TEST_FILTER ${long}-*Soak* TEST_LIST ${target}_long DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${name}.long TIMEOUT 600)
   gtest_discover_tests(${target} TEST_FILTER *Soak* DISCOVERY_TIMEOUT 60 PROPERTIES LABELS soak ENVIRONMENT VERIDYN_SOAK=1 TIMEOUT 7200)
 
   # What CTest reads after the tests of this folder.
-  file(STRINGS ${PROJECT_SOURCE_DIR}/tests/waiting_tests.txt waiting REGEX "^[^#]")
-  list(JOIN waiting "|" waiting)
-  file(STRINGS ${PROJECT_SOURCE_DIR}/tests/lone_tests.txt lone REGEX "^[^#]")
-  list(JOIN lone "|" lone)
+  set(left_out *Soak*:${long}:${alone})
   set(file ${CMAKE_CURRENT_BINARY_DIR}/test_resources.cmake)
   file(CONFIGURE OUTPUT ${file} @ONLY CONTENT [[
-foreach(test IN LISTS @target@_short @target@_long)
-  if(test MATCHES "@lone@")
+foreach(test IN LISTS @target@_alone @target@_long)
+  if(test MATCHES "@lone_names@")
     set_tests_properties(${test} PROPERTIES RUN_SERIAL TRUE)
-  elseif(test MATCHES "@waiting@")
+  elseif(test MATCHES "@waiting_names@")
     set_tests_properties(${test} PROPERTIES RESOURCE_GROUPS waiting:1 COST 1000)
   else()
     set_tests_properties(${test} PROPERTIES RESOURCE_GROUPS cores:1)
   endif()
 endforeach()
+set(BINARY "@CMAKE_RUNTIME_OUTPUT_DIRECTORY@/@target@")
+set(MODULE "@name@")
+set(LEFT_OUT "@left_out@")
+include("@PROJECT_SOURCE_DIR@/cmake/VeridynSuites.cmake")
 ]])
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${file})
 endfunction()

@@ -140,31 +140,26 @@ TEST(WheelCalibration, ThatCannotBeIsRefusedWithFileLineAndKey) {
     return file.refusal(text);
   };
   EXPECT_EQ(with("centre = 32768", "centre = 70000"),
-            "ThatCannotBeIsRefusedWithFileLineAndKey.toml:5: steering.centre: is 70000; must lie between the locks 0 "
+            "wheel.toml:5: steering.centre: is 70000; must lie between the locks 0 "
             "and 65535");
   EXPECT_EQ(with("axis = \"ABS_X\"", "axis = \"ABS_Q\""),
-            "ThatCannotBeIsRefusedWithFileLineAndKey.toml:3: steering.axis: 'ABS_Q' is no axis; say ABS_X, ABS_WHEEL, "
+            "wheel.toml:3: steering.axis: 'ABS_Q' is no axis; say ABS_X, ABS_WHEEL, "
             "ABS_GAS, ... or ABS_ "
             "and its number");
-  EXPECT_EQ(with("lock = 7.854", "lock = -1"),
-            "ThatCannotBeIsRefusedWithFileLineAndKey.toml:7: steering.lock: is -1 rad; must be > 0 and <= 100");
+  EXPECT_EQ(with("lock = 7.854", "lock = -1"), "wheel.toml:7: steering.lock: is -1 rad; must be > 0 and <= 100");
   EXPECT_EQ(with("deadband = 0.005", "deadband = 0.9"),
-            "ThatCannotBeIsRefusedWithFileLineAndKey.toml:8: steering.deadband: is 0.9; must be from 0 to 0.5");
+            "wheel.toml:8: steering.deadband: is 0.9; must be from 0 to 0.5");
   EXPECT_EQ(with("pressed = 150", "pressed = 0"),
-            "ThatCannotBeIsRefusedWithFileLineAndKey.toml:12: throttle.pressed: is 0, where the pedal is released: it "
+            "wheel.toml:12: throttle.pressed: is 0, where the pedal is released: it "
             "does not move");
   EXPECT_EQ(with("ABS_BRAKE", "ABS_GAS"),
-            "ThatCannotBeIsRefusedWithFileLineAndKey.toml:15: brake.axis: ABS_GAS is that of the throttle too, and "
+            "wheel.toml:15: brake.axis: ABS_GAS is that of the throttle too, and "
             "their ranges overlap");
-  EXPECT_EQ(with("ABS_BRAKE", "ABS_X"),
-            "ThatCannotBeIsRefusedWithFileLineAndKey.toml:15: brake.axis: ABS_X is that of the steering");
-  EXPECT_EQ(with("ABS_MISC", "ABS_GAS"),
-            "ThatCannotBeIsRefusedWithFileLineAndKey.toml:20: gear.axis: ABS_GAS is that of the steering or a pedal");
-  EXPECT_EQ(with("reverse = 128", "reverse = 0"),
-            "ThatCannotBeIsRefusedWithFileLineAndKey.toml:22: gear.reverse: is 0 like forward");
-  EXPECT_EQ(
-      with("left = 0", "left = 3000000000"),
-      "ThatCannotBeIsRefusedWithFileLineAndKey.toml:4: steering.left: is 3000000000, beyond what an axis can say");
+  EXPECT_EQ(with("ABS_BRAKE", "ABS_X"), "wheel.toml:15: brake.axis: ABS_X is that of the steering");
+  EXPECT_EQ(with("ABS_MISC", "ABS_GAS"), "wheel.toml:20: gear.axis: ABS_GAS is that of the steering or a pedal");
+  EXPECT_EQ(with("reverse = 128", "reverse = 0"), "wheel.toml:22: gear.reverse: is 0 like forward");
+  EXPECT_EQ(with("left = 0", "left = 3000000000"),
+            "wheel.toml:4: steering.left: is 3000000000, beyond what an axis can say");
   EXPECT_NE(with("[brake]", "[brakes]").find("brake"), std::string::npos);
   EXPECT_NE(with("left = 0", "left = 0\nleft_lock = 3").find("left_lock"), std::string::npos);
 }
