@@ -38,7 +38,7 @@ void add(std::vector<MavlinkField>& fields, const Triple& names, GatherType type
 }
 
 constexpr Triple kAcc{"xacc", "yacc", "zacc"}, kGyro{"xgyro", "ygyro", "zgyro"}, kMag{"xmag", "ymag", "zmag"};
-constexpr Triple kVelocity{"vx", "vy", "vz"}, kAngles{"roll", "pitch", "yaw"};
+constexpr Triple kVelocityNames{"vx", "vy", "vz"}, kAngleNames{"roll", "pitch", "yaw"};
 constexpr Triple kRates{"rollspeed", "pitchspeed", "yawspeed"};
 
 MavlinkField boot_ms() { return field("time_boot_ms", GatherType::kUint32, "ms"); }
@@ -178,19 +178,19 @@ std::vector<MavlinkMessage> declared() {
   find(31).push_back(extension(array("repr_offset_q", GatherType::kFloat, 4)));
 
   MavlinkMessage attitude{30, "ATTITUDE", {boot_ms()}};
-  add(attitude.fields, kAngles, GatherType::kFloat, "rad");
+  add(attitude.fields, kAngleNames, GatherType::kFloat, "rad");
   add(attitude.fields, kRates, GatherType::kFloat, "rad/s");
   all.push_back(attitude);
 
   MavlinkMessage local{32, "LOCAL_POSITION_NED", {boot_ms()}};
   add(local.fields, {"x", "y", "z"}, GatherType::kFloat, "m");
-  add(local.fields, kVelocity, GatherType::kFloat, "m/s");
+  add(local.fields, kVelocityNames, GatherType::kFloat, "m/s");
   all.push_back(local);
 
   MavlinkMessage global{33, "GLOBAL_POSITION_INT", {boot_ms()}};
   add_gps(global.fields);
   global.fields.push_back(field("relative_alt", GatherType::kInt32, "m", 1e-3));
-  add(global.fields, kVelocity, GatherType::kInt16, "m/s", 0.01);
+  add(global.fields, kVelocityNames, GatherType::kInt16, "m/s", 0.01);
   global.fields.push_back(optional(field("hdg", GatherType::kUint16, "deg", 0.01)));
   all.push_back(global);
 
