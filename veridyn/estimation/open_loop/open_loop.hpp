@@ -86,12 +86,13 @@ struct OpenLoop {
 /// The scores in the terms of estimate.json: `validation` and `fit` of each state.
 void add_open_loop(const OpenLoop& open_loop, Estimate& estimate);
 
-/// The unit in which a quantity is shown: deg for rad, deg/s for rad/s, others as they are; and what SI is multiplied
-/// with for it.
+/// The unit in which a quantity is shown: deg for rad, deg/s for rad/s, others as they are.
 [[nodiscard]] std::string shown_unit(std::string_view unit);
+/// What a quantity of this SI unit is multiplied with to be in `shown_unit`.
 [[nodiscard]] double shown_factor(std::string_view unit);
-/// The SI unit of a state's series, and what these are multiplied with to be in `state.unit`.
+/// The SI unit of a state's series.
 [[nodiscard]] std::string si_unit(const OpenLoopState& state);
+/// What they are multiplied with to be in `state.unit`.
 [[nodiscard]] double shown_factor(const OpenLoopState& state);
 
 }  // namespace veridyn::estimation

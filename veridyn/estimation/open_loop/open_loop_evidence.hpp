@@ -9,9 +9,10 @@
 
 namespace veridyn::estimation {
 
-/// Periods of its natural motion that a forecast has to hold: with care below the first, failed below the second where
-/// the error is large.
-inline constexpr double kCarePeriods = 10.0, kFailedPeriods = 3.0;
+/// Periods of its natural motion that a forecast has to hold: with care below them.
+inline constexpr double kCarePeriods = 10.0;
+/// Failed below them, where the error is large.
+inline constexpr double kFailedPeriods = 3.0;
 /// Errors that are large, over the motion's standard deviation.
 inline constexpr double kLargeError = 0.25;
 
