@@ -2,6 +2,7 @@
 # tests of their own (veridyn_module_tests). One process a suite: starting one for each of the 3500 cases took a third of
 # the time of all.
 # BINARY, MODULE, LEFT_OUT: the binary, its module, the filter of cases that are left out
+cmake_policy(VERSION 3.25) # CTest sets none
 if(NOT EXISTS "${BINARY}")
   add_test("${MODULE}.NotBuilt" "${BINARY}")
   set_tests_properties("${MODULE}.NotBuilt" PROPERTIES LABELS "${MODULE}")
