@@ -102,7 +102,7 @@ int rig_camera(const Arguments& arguments) {
   for (double now = begin; !over(now); now = seconds(clock.now())) {
     truth.receive(clock.now() + 2 * kMillisecond, seen);
     if (!seen.knows(next)) {
-      // Nobody drives yet, or any more: pictures begin anew with the next place.
+      // Nobody drives yet, or nobody does any longer: pictures go on from the next place.
       constexpr double kNobody_s = 0.5;
       if (now > next + kNobody_s) next = now;
       continue;

@@ -85,7 +85,7 @@ TEST(LogParts, OfTelemetryAreItsRestartsTooAndTheyAreReadByTheirNumber) {
     writer.packet(us, 30, 39, pack(boot_ms, roll, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F));
   };
   for (std::uint32_t i = 0; i < 100; ++i) attitude(100'000ULL * i, 500'000 + 100 * i, 1.0F);
-  // Five seconds later the autopilot has started anew.
+  // Five seconds later the autopilot has restarted.
   for (std::uint32_t i = 0; i < 80; ++i) attitude(15'000'000 + 100'000ULL * i, 3000 + 100 * i, 2.0F);
   const testing::TemporaryFolder folder;
   const auto path = folder.write("two.tlog", writer.bytes());

@@ -82,7 +82,7 @@ TEST(Tlog, GoesOnWhereTheVehicleStartsAnew) {
   EXPECT_NEAR((*topic.time)[49], 0.98, 1e-9);
   EXPECT_NEAR((*topic.time)[50], 90.0, 1e-9);
   EXPECT_DOUBLE_EQ(topic.find("roll")->value(50), 2.0);
-  EXPECT_THAT(read.damage.notes, Contains(HasSubstr("started anew 1 time;")));
+  EXPECT_THAT(read.damage.notes, Contains(HasSubstr("restarted 1 time;")));
   ASSERT_EQ(read.restarts.size(), 1U);
   EXPECT_NEAR(read.restarts[0], 90.0, 1e-9);
 }

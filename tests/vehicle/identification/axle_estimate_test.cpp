@@ -13,23 +13,11 @@ namespace {
 
 using estimation::ParameterStatus;
 using testing::drive_bicycle;
+using testing::exact_regressions;
 using testing::family_car;
 using testing::identify;
 using testing::lively_drive;
-using testing::mapped;
 using testing::relative;
-
-/// Both regressions of a bicycle of small angles at a varying speed, which obeys them without error.
-DriveRegressions exact_regressions(const VehicleParameters<double>& p) {
-  auto bicycle = testing::linear_bicycle(p);
-  bicycle.geometry = BicycleGeometry::kSmallAngles;
-  const testing::WanderingSteer steer(3, 0.02);
-  const VehicleTrajectory drive = drive_bicycle<BicycleModel<double, LinearTyre<double>>>(
-      [&](double) { return bicycle; }, 40.0, steer, [](double t) { return 20.0 + 3.0 * std::sin(0.4 * t); });
-  const DriveSignals signals = prepare_drive_signals(mapped(record_drive(drive, testing::perfect_sensors(), 1)), {});
-  const std::vector<TimeSpan> spans{{2.0, 18.0}, {20.0, 38.0}};
-  return drive_regressions(signals, spans, p, 2.0);
-}
 
 TEST(AxleEstimate, OfConsistentCoefficientsIsTheirBicycle) {
   const VehicleParameters<double> p = family_car();

@@ -23,14 +23,7 @@ using testing::mapped;
 // The bicycle with small angles obeys both relations without error, so each coefficient is its closed form.
 TEST(DriveRegression, CoefficientsAreTheirClosedForms) {
   const VehicleParameters<double> p = family_car();
-  auto bicycle = testing::linear_bicycle(p);
-  bicycle.geometry = BicycleGeometry::kSmallAngles;
-  const testing::WanderingSteer steer(3, 0.02);
-  const VehicleTrajectory drive = drive_bicycle<BicycleModel<double, LinearTyre<double>>>(
-      [&](double) { return bicycle; }, 40.0, steer, [](double t) { return 20.0 + 3.0 * std::sin(0.4 * t); });
-  const DriveSignals signals = prepare_drive_signals(mapped(record_drive(drive, testing::perfect_sensors(), 1)), {});
-  const std::vector<TimeSpan> spans{{2.0, 18.0}, {20.0, 38.0}};
-  const DriveRegressions data = drive_regressions(signals, spans, p, 2.0);
+  const DriveRegressions data = testing::exact_regressions(p);
   ASSERT_FALSE(data.direct);
   const Eigen::VectorXd first = data.first.regressors.colPivHouseholderQr().solve(data.first.regressand);
   const Eigen::VectorXd second = data.second.regressors.colPivHouseholderQr().solve(data.second.regressand);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include "tests/vehicle/simulated_drive.hpp"
 #include "veridyn/vehicle/identification/vehicle_identification.hpp"
@@ -19,6 +20,18 @@ inline VehicleIdentification identify(const VehicleTrajectory& trajectory, const
   const DriveSignals signals = prepare_drive_signals(mapped(record_drive(trajectory, sensors, seed)), signal_options);
   const DriveSegments segments = find_drive_segments(signals, {});
   return identify_parameters({signals, segments, start, signal_options, options}, progress);
+}
+
+/// Both regressions of a bicycle of small angles at a varying speed, which obeys them without error.
+inline DriveRegressions exact_regressions(const VehicleParameters<double>& p) {
+  auto bicycle = linear_bicycle(p);
+  bicycle.geometry = BicycleGeometry::kSmallAngles;
+  const WanderingSteer steer(3, 0.02);
+  const VehicleTrajectory drive = drive_bicycle<BicycleModel<double, LinearTyre<double>>>(
+      [&](double) { return bicycle; }, 40.0, steer, [](double t) { return 20.0 + 3.0 * std::sin(0.4 * t); });
+  const DriveSignals signals = prepare_drive_signals(mapped(record_drive(drive, perfect_sensors(), 1)), {});
+  const std::vector<TimeSpan> spans{{2.0, 18.0}, {20.0, 38.0}};
+  return drive_regressions(signals, spans, p, 2.0);
 }
 
 /// By how much an estimate misses the truth, as a share of it.

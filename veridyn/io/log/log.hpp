@@ -65,7 +65,7 @@ struct Log {
   std::map<std::string, double> default_parameters;  ///< what the firmware would use, where the log says so
   std::map<std::string, std::string> information;
   LogDamage damage;
-  std::vector<double> restarts;  ///< when the vehicle or its clock began anew, times going on [s]
+  std::vector<double> restarts;  ///< when the vehicle or its clock restarted, times going on [s]
   std::size_t part = 0;          ///< which part of its file it is, from 1 (`log_parts.hpp`); 0: all of it
 
   [[nodiscard]] const LogTopic* find(std::string_view name, int instance = 0) const;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/io/packets/packet_layout.hpp"
 
 namespace veridyn::io {
 namespace {
@@ -268,22 +269,8 @@ MavlinkMessage laid_out(MavlinkMessage m) {
 }  // namespace
 
 std::uint32_t MavlinkField::element_size() const {
-  switch (type) {
-    case GatherType::kInt16:
-    case GatherType::kUint16:
-    case GatherType::kHalf:
-      return 2;
-    case GatherType::kInt32:
-    case GatherType::kUint32:
-    case GatherType::kFloat:
-      return 4;
-    case GatherType::kInt64:
-    case GatherType::kUint64:
-    case GatherType::kDouble:
-      return 8;
-    default:
-      return 1;
-  }
+  // A text is an array of characters.
+  return type == GatherType::kText ? 1U : static_cast<std::uint32_t>(size_of(type));
 }
 
 const MavlinkField* MavlinkMessage::find(std::string_view field_name) const {

@@ -119,8 +119,8 @@ class TlogReader {
       if (sender == main) log_.restarts = sent.clock.restarts();
     }
     if (const std::size_t count = log_.restarts.size(); count > 0)
-      log_.damage.notes.push_back(fmt::format(
-          "the vehicle started anew {} time{}; its times go on after what came before", count, count == 1 ? "" : "s"));
+      log_.damage.notes.push_back(fmt::format("the vehicle restarted {} time{}; its times go on after what came before",
+                                              count, count == 1 ? "" : "s"));
   }
 
  private:

@@ -6,7 +6,7 @@
 namespace veridyn::io::internal {
 namespace {
 
-/// A stamp that is so far before the latest is of a clock that began anew [s]; messages overtake each other by less.
+/// A stamp that is so far before the latest is of a clock that restarted [s]; messages overtake each other by less.
 constexpr double kRestart_s = 10.0;
 /// Beyond it stamps count from 1970 [s].
 constexpr double kSince1970_s = 1e9;

@@ -15,7 +15,7 @@ class SenderClock {
   void add(double received, std::optional<double> own);
   /// Of the packets in the order in which they were added [s].
   [[nodiscard]] std::vector<double> times() const;
-  /// When the sender's clock began anew [s].
+  /// When the sender's clock restarted [s].
   [[nodiscard]] std::vector<double> restarts() const;
 
  private:
