@@ -35,6 +35,8 @@ target_compile_options(
             -Wpedantic
             -Wconversion
             -Wshadow
+            # Sizes of the standard library are unsigned, Eigen's indices are not; casting one to the other hid what a line computes.
+            $<$<CXX_COMPILER_ID:Clang>:-Wno-sign-conversion>
             $<$<BOOL:${VERIDYN_WERROR}>:-Werror>
             $<$<BOOL:${VERIDYN_SANITIZE}>:-fsanitize=address,undefined;${not_sanitized};-fno-sanitize-recover=all;-fno-omit-frame-pointer>
             $<$<BOOL:${VERIDYN_SANITIZE_THREAD}>:-fsanitize=thread;-fno-omit-frame-pointer>)

@@ -6,8 +6,6 @@
 #include <array>
 #include <cmath>
 
-#include "veridyn/core/index.hpp"
-
 namespace veridyn::app {
 namespace {
 
@@ -70,7 +68,7 @@ Table parameter_table(const Calibration& c) {
   for (int i = 0; i < TrackCamera::kParameters; ++i) {
     if (i >= 8 && !c.distorted) break;
     table.rows.push_back(
-        {.cells = {text_cell(kNames[at(i)]), measured_cell(c.camera.parameters()(i), sigma(i)),
+        {.cells = {text_cell(kNames[i]), measured_cell(c.camera.parameters()(i), sigma(i)),
                    measured_cell(sigma(i), sigma(i)), text_cell(i < 6 || i == 8 || i == 9 ? "px" : "")}});
   }
   return table;

@@ -8,7 +8,6 @@
 
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/output_folder.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/model_check.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
 #include "veridyn/muscle/simulation/pose_table.hpp"
@@ -62,11 +61,11 @@ std::string quadrant_text(const WrapQuadrant& quadrant) {
 
 /// "locked", "coupled to knee_angle_r".
 std::string coordinate_note(const Model& model, int index) {
-  std::string note = model.coordinates[at(index)].locked ? "locked" : "";
+  std::string note = model.coordinates[index].locked ? "locked" : "";
   for (const CoordinateCoupler& coupler : model.couplers) {
     if (coupler.dependent != index) continue;
     if (!note.empty()) note += ", ";
-    note += "coupled to " + model.coordinates[at(coupler.independent)].name;
+    note += "coupled to " + model.coordinates[coupler.independent].name;
   }
   return note;
 }
@@ -74,7 +73,7 @@ std::string coordinate_note(const Model& model, int index) {
 std::string wraps_text(const Model& model, const Muscle& muscle) {
   std::string text;
   for (const PathWrap& wrap : muscle.wraps) {
-    text += (text.empty() ? "" : " ") + model.wrap_objects[at(wrap.object)].name;
+    text += (text.empty() ? "" : " ") + model.wrap_objects[wrap.object].name;
   }
   return text;
 }
@@ -109,7 +108,7 @@ int inspect_models(const std::string& folder, const CommonOptions& options) {
 }
 
 std::string describe(const std::string& file, const Model& model) {
-  const auto body = [&](int index) -> const std::string& { return model.bodies[at(index)].name; };
+  const auto body = [&](int index) -> const std::string& { return model.bodies[index].name; };
   double mass = 0.0;
   for (const Body& b : model.bodies) mass += b.mass;
   std::string text = fmt::format(
@@ -130,7 +129,7 @@ std::string describe(const std::string& file, const Model& model) {
   text += fmt::format("\n{:<24} {:<16} {:<24} {:<24} coordinates\n", "joint", "type", "parent", "child");
   for (const Joint& j : model.joints) {
     std::string names;
-    for (const int c : j.coordinates) names += (names.empty() ? "" : " ") + model.coordinates[at(c)].name;
+    for (const int c : j.coordinates) names += (names.empty() ? "" : " ") + model.coordinates[c].name;
     text += fmt::format("{:<24} {:<16} {:<24} {:<24} {}\n", j.name, j.type, body(j.parent), body(j.child), names);
   }
   text += fmt::format("\n{:<24} {:<12} {:>10} {:>10} {:>10}  note\n", "coordinate [rad] or [m]", "motion", "low",
@@ -160,14 +159,14 @@ std::string describe(const std::string& file, const Model& model) {
                         quadrant_text(wrap.quadrant), wrap.active ? "" : " (off)");
   }
   for (const CoordinateActuator& a : model.actuators) {
-    text += fmt::format("actuator {} on {}, optimal force {}\n", a.name, model.coordinates[at(a.coordinate)].name,
+    text += fmt::format("actuator {} on {}, optimal force {}\n", a.name, model.coordinates[a.coordinate].name,
                         a.optimal_force);
   }
   for (const CoordinateLimitForce& f : model.limit_forces) {
-    text += fmt::format("limit force {} on {}\n", f.name, model.coordinates[at(f.coordinate)].name);
+    text += fmt::format("limit force {} on {}\n", f.name, model.coordinates[f.coordinate].name);
   }
   for (const CoordinateSpring& f : model.coordinate_springs)
-    text += fmt::format("spring {} on {}\n", f.name, model.coordinates[at(f.coordinate)].name);
+    text += fmt::format("spring {} on {}\n", f.name, model.coordinates[f.coordinate].name);
   for (const PointSpring& f : model.body_forces.springs)
     text += fmt::format("spring {} from {} to {}\n", f.name, body(f.body_1), body(f.body_2));
   for (const Bushing& f : model.body_forces.bushings)

@@ -27,8 +27,7 @@ std::string draws_csv(const PosteriorSample& posterior) {
     if (row / walkers % every != 0) continue;
     text += fmt::format("{},{},{}", signed_index(e.warm_up) + row / walkers + 1, row % walkers + 1,
                         io::csv_number(e.log_density(row)));
-    for (std::size_t i = 0; i < posterior.parameters.size(); ++i)
-      text += "," + io::csv_number(e.draws(row, signed_index(i)));
+    for (std::size_t i = 0; i < posterior.parameters.size(); ++i) text += "," + io::csv_number(e.draws(row, i));
     text += "\n";
   }
   return text;
@@ -40,7 +39,7 @@ std::string intervals_csv(const PosteriorSample& posterior) {
     const PosteriorParameter& p = posterior.parameters[i];
     text += fmt::format("{},{},{},{},{},{},{},{}\n", io::csv_text(p.name), io::csv_text(p.unit), io::csv_number(p.mean),
                         io::csv_number(p.sd), io::csv_number(p.low), io::csv_number(p.median), io::csv_number(p.high),
-                        io::csv_number(posterior.ensemble.autocorrelation_steps(signed_index(i))));
+                        io::csv_number(posterior.ensemble.autocorrelation_steps(i)));
   }
   return text;
 }

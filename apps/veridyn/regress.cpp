@@ -71,7 +71,7 @@ std::vector<int> segments_of(const io::NumberColumn& column, std::size_t rows) {
 /// W of [x, z] from "name=sigma" words; empty without any.
 Eigen::MatrixXd errors_of(const std::vector<std::string>& words, const std::vector<std::string>& columns) {
   if (words.empty()) return {};
-  Eigen::MatrixXd W = Eigen::MatrixXd::Zero(signed_index(columns.size()), signed_index(columns.size()));
+  Eigen::MatrixXd W = Eigen::MatrixXd::Zero(columns.size(), columns.size());
   for (const std::string& word : words) {
     const std::size_t equals = word.find('=');
     const auto column = std::ranges::find(columns, word.substr(0, equals));
@@ -108,7 +108,7 @@ RegressionData data_of(const io::NumberTable& table, const Arguments& arguments)
     data.parameter_units.push_back(unit == "1" ? response.unit : fmt::format("{}/({})", response.unit, unit));
   }
   const auto rows = signed_index(table.rows);
-  data.regressors = RowMatrix::Ones(rows, signed_index(data.parameter_names.size()));
+  data.regressors = RowMatrix::Ones(rows, data.parameter_names.size());
   for (std::size_t j = 0; j < names.size(); ++j)
     data.regressors.col(signed_index(j) + (constant ? 1 : 0)) =
         Eigen::Map<const Eigen::VectorXd>(table.at(names[j]).number.data(), rows);

@@ -12,7 +12,6 @@
 #include "apps/veridyn/output_folder.hpp"
 #include "apps/veridyn/response_results.hpp"
 #include "apps/veridyn/version.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/io/results/indices_csv.hpp"
 #include "veridyn/muscle/muscle_study_sensitivity.hpp"
 #include "veridyn/muscle/sensitivity/sensitivity_tables.hpp"
@@ -51,8 +50,7 @@ Summary summary_of(const std::filesystem::path& folder, const SensitivityStudy& 
     task["wrap_bands"] = r.tasks[t].wrap_bands;
     task["failed"] = r.tasks[t].failed;
     task["mean_nrmse"] = Summary::object();
-    for (std::size_t m = 0; m < r.muscles.size(); ++m)
-      task["mean_nrmse"][r.muscles[m]] = r.sampling.mean(signed_index(m), signed_index(t));
+    for (std::size_t m = 0; m < r.muscles.size(); ++m) task["mean_nrmse"][r.muscles[m]] = r.sampling.mean(m, t);
     s["tasks"].push_back(std::move(task));
   }
   s["indices"] = Summary::array();

@@ -69,16 +69,15 @@ Summary summary_of(const std::filesystem::path& folder, const MuscleStudy& study
         {{"peak_force_N", t.tendon_force.col(i).maxCoeff()}, {"peak_activation", t.activation.col(i).maxCoeff()}});
   }
   if (const auto& fit = result.external_fit; fit && fit->coordinate >= 0)
-    s["external_loads"] = Summary::object({{"coordinate", model.coordinates[at(fit->coordinate)].name},
+    s["external_loads"] = Summary::object({{"coordinate", model.coordinates[fit->coordinate].name},
                                            {"weight_N", fit->weight},
                                            {"residual_without_N", fit->without},
                                            {"residual_with_N", fit->with},
                                            {"factor", fit->factor}});
   s["events"] = Summary::array();
   for (const MuscleEvent& event : t.events) {
-    s["events"].push_back(Summary::object({{"time_s", event.time},
-                                           {"muscle", model.muscles[at(event.muscle)].name()},
-                                           {"what", event_text(event.kind)}}));
+    s["events"].push_back(Summary::object(
+        {{"time_s", event.time}, {"muscle", model.muscles[event.muscle].name()}, {"what", event_text(event.kind)}}));
   }
   s["warnings"] = result.warnings;
   s["notes"] = result.notes;
@@ -91,7 +90,7 @@ std::string headline(const MuscleStudy& study, const MuscleResult& result) {
   const MuscleTrajectory& t = result.trajectory;
   std::string text;
   for (const int c : study.system->reduction().free()) {
-    const Coordinate& k = model.coordinates[at(c)];
+    const Coordinate& k = model.coordinates[c];
     const bool angle = k.motion != CoordinateMotion::kTranslational;
     const double unit = angle ? 180.0 / kPi : 1.0;
     text += fmt::format("{}{} {:.4g} to {:.4g} {}", text.empty() ? "" : ", ", k.name, unit * t.q(0, c),

@@ -45,8 +45,7 @@ std::string live_table(const TrackedFlight& flight) {
       const bool held = r.unexcited_share()(i) > 0.5;
       const double sigma = r.sigma()(i);
       const std::string band = std::isfinite(sigma) ? fmt::format("{:.2g}", sigma) : "?";
-      text +=
-          fmt::format(" {}{} {:.4g} +- {}{}", held ? "[" : "", r.names()[at(i)], r.theta()(i), band, held ? "]" : "");
+      text += fmt::format(" {}{} {:.4g} +- {}{}", held ? "[" : "", r.names()[i], r.theta()(i), band, held ? "]" : "");
     }
     text += "\n";
   }

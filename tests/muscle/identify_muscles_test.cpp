@@ -198,7 +198,7 @@ TEST(IdentifyMuscles, OneTaskIsFlaggedAndItsNullDirectionsAreTrue) {
   const auto change = [&](Eigen::VectorXd v) {
     double largest = 0.0;
     for (Eigen::Index i = 0; i < v.size(); ++i) {
-      v(i) *= study.unknowns[static_cast<std::size_t>(i)].prior_sigma;
+      v(i) *= study.unknowns[i].prior_sigma;
       largest = std::max(largest, std::abs(v(i) / a.result.best.theta(i)));
     }
     return task_error(here[0], simulate_tasks(model, a.result.best.theta + 0.05 / largest * v, 1)[0]).nrmse;

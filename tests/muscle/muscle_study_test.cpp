@@ -53,11 +53,11 @@ TEST(MuscleStudy, ReadsAForwardStudy) {
   EXPECT_THAT(excitations_at(study, 1.5), ElementsAre(0.5, 0.3, 0.3, 0.3, 0.3, 0.4));
   // The load is in the system's masses, not in what is written back; parameters are in both.
   const int forearm = study.written.body("forearm");
-  EXPECT_DOUBLE_EQ(study.written.bodies[static_cast<std::size_t>(forearm)].mass, 1.5);
-  EXPECT_DOUBLE_EQ(study.system->model().bodies[static_cast<std::size_t>(forearm)].mass, 3.5);
+  EXPECT_DOUBLE_EQ(study.written.bodies[forearm].mass, 1.5);
+  EXPECT_DOUBLE_EQ(study.system->model().bodies[forearm].mass, 3.5);
   for (const Model* model : {&study.written, &study.system->model()}) {
     const auto value = [&](const char* muscle) -> const MusculotendonParameters<double>& {
-      return model->muscles[static_cast<std::size_t>(model->muscle(muscle))].parameters.musculotendon;
+      return model->muscles[model->muscle(muscle)].parameters.musculotendon;
     };
     EXPECT_DOUBLE_EQ(value("biceps_long").optimal_fiber_length, 0.15);
     EXPECT_DOUBLE_EQ(value("brachialis").max_isometric_force, 900.0);

@@ -117,9 +117,8 @@ void write_files(const std::filesystem::path& folder, const TaskStudy& study, co
     const TaskRecording& task = all.tasks[i];
     std::string angles = "time,shoulder_flexion,elbow_flexion\n", moments = "time,elbow_flexion_moment\n", emg = "time";
     for (std::size_t k = 0; k < task.time.size(); ++k) {
-      const auto row = static_cast<Eigen::Index>(k);
-      angles += fmt::format("{},{},{}\n", task.time[k], task.q(row, 0), task.q(row, 1));
-      moments += fmt::format("{},{}\n", task.time[k], sign * task.measured(row, 0));
+      angles += fmt::format("{},{},{}\n", task.time[k], task.q(k, 0), task.q(k, 1));
+      moments += fmt::format("{},{}\n", task.time[k], sign * task.measured(k, 0));
     }
     for (const std::string& signal : study.emg->signals) emg += "," + signal;
     emg += "\n";

@@ -32,13 +32,12 @@ TEST(TaskRecordings, OfAPersonWithoutNoiseAreItsSimulation) {
   const Eigen::VectorXd start = start_values(study.unknowns);
   ASSERT_EQ(all.truth.size(), study.unknowns.size());
   for (std::size_t i = 0; i < study.unknowns.size(); ++i) {
-    const double ratio = all.truth.at(study.unknowns[i].name) / start(static_cast<Eigen::Index>(i));
+    const double ratio = all.truth.at(study.unknowns[i].name) / start(i);
     EXPECT_NEAR(ratio, 1.0, 0.05) << study.unknowns[i].name;
     EXPECT_NE(ratio, 1.0) << study.unknowns[i].name;
   }
   Eigen::VectorXd truth(start.size());
-  for (std::size_t i = 0; i < study.unknowns.size(); ++i)
-    truth(static_cast<Eigen::Index>(i)) = all.truth.at(study.unknowns[i].name);
+  for (std::size_t i = 0; i < study.unknowns.size(); ++i) truth(i) = all.truth.at(study.unknowns[i].name);
   for (const TaskRecording& task : all.tasks) {
     ASSERT_TRUE(task.forward) << task.name;
     EXPECT_FALSE(task.along);

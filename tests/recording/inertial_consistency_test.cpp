@@ -37,20 +37,18 @@ Recording swaying_body(std::uint64_t seed, const Noise& noise) {
     fast.push_back(t);
     numerics::Vector3<double> angle, angle_rate, acceleration;
     for (int i = 0; i < 3; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      angle(i) = kAngle[k] * std::sin(kAngleRate[k] * t + i);
-      angle_rate(i) = kAngle[k] * kAngleRate[k] * std::cos(kAngleRate[k] * t + i);
-      acceleration(i) = kSpeed[k] * kSpeedRate[k] * std::cos(kSpeedRate[k] * t + 2 * i);
+      angle(i) = kAngle[i] * std::sin(kAngleRate[i] * t + i);
+      angle_rate(i) = kAngle[i] * kAngleRate[i] * std::cos(kAngleRate[i] * t + i);
+      acceleration(i) = kSpeed[i] * kSpeedRate[i] * std::cos(kSpeedRate[i] * t + 2 * i);
     }
     const auto rates = numerics::body_rates(angle(0), angle(1), angle_rate);
     const auto force = (numerics::R_body_from_ned(angle(0), angle(1), angle(2)) *
                         (acceleration - numerics::Vector3<double>(0.0, 0.0, kGravity)))
                            .eval();
     for (int i = 0; i < 3; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      v[k].push_back(force(i) + noise.force * random.normal());
-      v[3 + k].push_back(rates(i) + noise.rate * random.normal());
-      v[6 + k].push_back(angle(i) + noise.angle * random.normal());
+      v[i].push_back(force(i) + noise.force * random.normal());
+      v[3 + i].push_back(rates(i) + noise.rate * random.normal());
+      v[6 + i].push_back(angle(i) + noise.angle * random.normal());
     }
   }
   for (double t = 0.0; t < kDuration_s; t += 0.1) {

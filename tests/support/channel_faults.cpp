@@ -71,7 +71,7 @@ RecordingFault frozen(ChannelNames names, double share) {
   return each(std::move(names), [=](Channel& c) {
     const auto n = static_cast<double>(c.size());
     const auto first = static_cast<std::ptrdiff_t>(0.4 * n), last = static_cast<std::ptrdiff_t>((0.4 + share) * n);
-    std::fill(c.value.begin() + first, c.value.begin() + last, c.value[static_cast<std::size_t>(first)]);
+    std::fill(c.value.begin() + first, c.value.begin() + last, c.value[first]);
   });
 }
 

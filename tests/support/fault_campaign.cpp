@@ -134,7 +134,7 @@ std::string confusion_table(std::span<const Trial> trials, std::span<const std::
     std::array<std::size_t, kFindings.size()> count{};
     for (const Trial& trial : trials) {
       if (trial.fault != fault) continue;
-      ++count[static_cast<std::size_t>(std::ranges::find(kFindings, trial.finding) - kFindings.begin())];
+      ++count[std::ranges::find(kFindings, trial.finding) - kFindings.begin()];
     }
     table += fmt::format("| {} |", fault);
     for (const std::size_t n : count) table += n == 0 ? std::string(" |") : fmt::format(" {} |", n);

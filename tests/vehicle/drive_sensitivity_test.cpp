@@ -86,7 +86,7 @@ std::array<double, 4> exact_first_orders() {
           mean += y / kAll;
           square += y * y / kAll;
           const std::array<int, 4> at{i, j, k, l};
-          for (std::size_t n = 0; n < 4; ++n) conditional[n][static_cast<std::size_t>(at[n])] += y * kPoints / kAll;
+          for (std::size_t n = 0; n < 4; ++n) conditional[n][at[n]] += y * kPoints / kAll;
         }
       }
     }

@@ -23,7 +23,7 @@ Recording cut_at(const Recording& whole, double until) {
   for (Channel channel : whole.channels()) {
     const auto times = channel.times();
     const auto n = std::upper_bound(times.begin(), times.end(), until) - times.begin();
-    channel.value.resize(static_cast<std::size_t>(n));
+    channel.value.resize(n);
     channel.time = make_time_base(std::vector<double>(times.begin(), times.begin() + n));
     part.add(std::move(channel));
   }

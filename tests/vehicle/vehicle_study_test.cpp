@@ -49,8 +49,7 @@ estimation::Estimate given_values(const std::array<double, 3>& values,
                                    .value = values[i],
                                    .sigma = 0.01 * values[i],
                                    .status = status[i]});
-    const auto k = static_cast<Eigen::Index>(i);
-    estimate.covariance(k, k) = 1e-4 * values[i] * values[i];
+    estimate.covariance(i, i) = 1e-4 * values[i] * values[i];
   }
   return estimate;
 }

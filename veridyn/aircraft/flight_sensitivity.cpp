@@ -12,7 +12,6 @@
 #include "veridyn/aircraft/simulation/flight_replay.hpp"
 #include "veridyn/aircraft/simulation/simulate_study.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/batches/fingerprint.hpp"
 
 namespace veridyn::aircraft {
@@ -52,7 +51,7 @@ Subject subject_at(Subject subject, std::span<const IndexInput> inputs, const Ei
   const std::vector<SubjectNumber> numbers = subject_numbers(subject);
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     for (const SubjectNumber& number : numbers)
-      if (number.name == inputs[i].name) *number.value = point(signed_index(i));
+      if (number.name == inputs[i].name) *number.value = point(i);
   }
   return subject;
 }
@@ -149,7 +148,7 @@ class ChangedFlights {
       std::size_t count = 0;
       for (std::size_t i = 0; i < kReplaySignals.size(); ++i) {
         if (!(scale_[i] > kNoDifference)) continue;
-        const double square = squares(signed_index(i)) / (scale_[i] * scale_[i]);
+        const double square = squares(i) / (scale_[i] * scale_[i]);
         by_signal[i] += square;
         sum += square / columns;
         ++count;

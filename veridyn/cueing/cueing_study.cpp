@@ -408,7 +408,7 @@ CueingResult cue(const CueingStudy& study, Progress& progress) {
     if (!study.optimum || progress.interrupted() || !study.platform.limits[tilt_axis(pair)].moves()) continue;
     progress.stage(pair == 0 ? "least error in sway and roll" : "least error in surge and pitch");
     try {
-      auto& least = result.least[static_cast<std::size_t>(pair)];
+      auto& least = result.least[pair];
       least = least_error(study.vehicle, study.platform, model, study.thresholds, pair);
       if (!least)
         result.notes.push_back(

@@ -65,14 +65,14 @@ Eigen::MatrixXd covariance_of(const Estimate& estimate, const std::vector<std::s
   for (const std::string& name : names) index.push_back(estimate.find(name) - estimate.parameters.data());
   const bool whole = estimate.covariance.rows() == signed_index(estimate.parameters.size());
   for (Eigen::Index i = 0; i < n; ++i) {
-    const double sigma = estimate.parameters[at(index[at(i)])].sigma;
+    const double sigma = estimate.parameters[index[i]].sigma;
     for (Eigen::Index j = 0; j < n; ++j) {
-      const double other = estimate.parameters[at(index[at(j)])].sigma;
-      const double vi = whole ? estimate.covariance(index[at(i)], index[at(i)]) : 0.0;
-      const double vj = whole ? estimate.covariance(index[at(j)], index[at(j)]) : 0.0;
+      const double other = estimate.parameters[index[j]].sigma;
+      const double vi = whole ? estimate.covariance(index[i], index[i]) : 0.0;
+      const double vj = whole ? estimate.covariance(index[j], index[j]) : 0.0;
       const bool correlated = i != j && vi > 0.0 && vj > 0.0;
       // Intervals may have been widened beyond the covariance: correlations are its, sizes the intervals'.
-      const double r = correlated ? estimate.covariance(index[at(i)], index[at(j)]) / std::sqrt(vi * vj) : 0.0;
+      const double r = correlated ? estimate.covariance(index[i], index[j]) / std::sqrt(vi * vj) : 0.0;
       P(i, j) = i == j ? sigma * sigma : std::isfinite(r) ? r * sigma * other : 0.0;
     }
   }
@@ -111,10 +111,10 @@ ComparedPair compared(std::span<const NamedEstimate> estimates, std::size_t firs
     if (comparable(p) && comparable_in(b, p.name) != nullptr) names.push_back(p.name);
   pair.parameters = names.size();
   if (names.empty()) return pair;
-  Eigen::VectorXd d(signed_index(names.size()));
+  Eigen::VectorXd d(names.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
     const Parameter &pa = *a.find(names[i]), &pb = *b.find(names[i]);
-    d(signed_index(i)) = pa.value - pb.value;
+    d(i) = pa.value - pb.value;
     const double sigmas = std::abs(pa.value - pb.value) / std::hypot(pa.sigma, pb.sigma);
     if (!(sigmas > pair.largest_sigmas)) continue;
     pair.largest_sigmas = sigmas;

@@ -15,7 +15,6 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/identification/emg_estimate.hpp"
 #include "veridyn/muscle/identification/emg_judgement.hpp"
 #include "veridyn/muscle/identification/task_posterior.hpp"
@@ -79,10 +78,10 @@ Part part_of(const TaskStudy& study, const TaskRecordings& all, bool hold_out, n
 
 /// Standard deviations of the outputs' noise; empty unless all are known.
 Eigen::VectorXd stated_noise(const TaskStudy& study) {
-  Eigen::VectorXd noise(signed_index(study.outputs.size()));
+  Eigen::VectorXd noise(study.outputs.size());
   for (std::size_t j = 0; j < study.outputs.size(); ++j) {
     if (!(study.outputs[j].noise_sd > 0.0)) return {};
-    noise(signed_index(j)) = study.outputs[j].noise_sd;
+    noise(j) = study.outputs[j].noise_sd;
   }
   return noise;
 }
@@ -118,7 +117,7 @@ std::vector<estimation::PredictedQuantity> predictions_of(const std::vector<Task
       if (!t.hold_out || t.estimated.size() == 0) continue;
       double before = kNaN;
       for (Eigen::Index k = 0; k < t.measured.rows(); ++k) {
-        const double z = t.measured(k, signed_index(j)), y = t.estimated(k, signed_index(j));
+        const double z = t.measured(k, j), y = t.estimated(k, j);
         if (std::isnan(z)) continue;
         measured.push_back(z);
         predicted.push_back(y);
@@ -144,7 +143,7 @@ Model with_values(const TaskStudy& study, std::span<const estimation::Parameter>
     if (p == nullptr || u.fixed || !std::isfinite(p->value)) continue;
     for (const MuscleParameterName& name : u.parameters) {
       if (name.of_excitation()) continue;
-      Muscle& muscle = model.muscles[at(model.muscle(own.muscles[at(name.muscle)].name()))];
+      Muscle& muscle = model.muscles[model.muscle(own.muscles[name.muscle].name())];
       double& value = field_of(muscle.parameters.musculotendon, name.field);
       value = u.factor ? value * p->value : p->value;
     }
@@ -342,7 +341,7 @@ estimation::ProfileResult profiles_of(const TaskStudy& study, const Part& part, 
   if (study.profiles.empty()) return {};
   progress.stage(fmt::format("profile likelihood of {} parameters", study.profiles.size()));
   if (!study.emg) return profile_tasks(*part.logged, part.measured, noise, found.estimate, study.profiles, progress);
-  const Eigen::VectorXd one = Eigen::VectorXd::Ones(signed_index(study.outputs.size()));
+  const Eigen::VectorXd one = Eigen::VectorXd::Ones(study.outputs.size());
   return profile_tasks(*found.emg.model, found.emg.measured, one, found.estimate, study.profiles, progress);
 }
 
@@ -462,7 +461,7 @@ MuscleAnalysis validate(const TaskStudy& study, const estimation::Estimate& esti
   for (std::size_t i = 0; i < study.unknowns.size(); ++i) {
     const estimation::Parameter* p = estimate.find(study.unknowns[i].name);
     if (p == nullptr || !std::isfinite(p->value)) continue;
-    theta(signed_index(i)) = p->value;
+    theta(i) = p->value;
     ++known;
   }
   if (known == 0)

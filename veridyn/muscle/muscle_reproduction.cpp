@@ -9,7 +9,6 @@
 #include <stdexcept>
 
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/muscle/identify_muscles.hpp"
 #include "veridyn/numerics/statistics.hpp"
@@ -80,7 +79,7 @@ Expectation read_expectation(const StudyTable& table, const std::vector<Compared
   std::vector<std::string> names;
   for (const ComparedQuantity q : kQuantities) names.emplace_back(to_string(q));
   const std::string quantity = table.choice_or("quantity", names, names.front());
-  e.quantity = kQuantities[at(std::find(names.begin(), names.end(), quantity) - names.begin())];
+  e.quantity = kQuantities[std::find(names.begin(), names.end(), quantity) - names.begin()];
   e.of = case_named(table, "case", table.text("case"), cases);
   static const std::vector<std::string> kStatistics = {"median", "largest"};
   e.largest = table.choice_or("statistic", kStatistics, "median") == "largest";

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/simulation/motion_analysis.hpp"
 #include "veridyn/muscle/simulation/wrap_bands.hpp"
 
@@ -136,7 +135,7 @@ std::vector<std::string> range_warnings(const MuscleStudy& study, const MuscleTr
   std::vector<std::string> warnings;
   const Model& model = study.system->model();
   for (const int c : study.system->reduction().free()) {
-    const Coordinate& k = model.coordinates[at(c)];
+    const Coordinate& k = model.coordinates[c];
     const double slack = 1e-3 * (k.high - k.low);
     for (Eigen::Index i = 0; i < t.q.rows(); ++i) {
       if (t.q(i, c) >= k.low - slack && t.q(i, c) <= k.high + slack) continue;
@@ -144,7 +143,7 @@ std::vector<std::string> range_warnings(const MuscleStudy& study, const MuscleTr
       const double unit = angle ? 1.0 / kDegree : 1.0;
       warnings.push_back(fmt::format(
           "'{}' leaves its range {:.4g} .. {:.4g} {} at {:.4g} s{}", k.name, unit * k.low, unit * k.high,
-          angle ? "deg" : "m", t.time[at(i)],
+          angle ? "deg" : "m", t.time[i],
           study.system->path_source() == PathSource::kFitted ? "; fitted paths are extrapolated from there on" : ""));
       break;
     }
@@ -156,8 +155,7 @@ std::vector<std::string> range_warnings(const MuscleStudy& study, const MuscleTr
 
 double MuscleResult::tracking_error(std::size_t coordinate) const {
   if (desired.rows() == 0 || desired.rows() != trajectory.q.rows()) return 0.0;
-  const auto c = static_cast<Eigen::Index>(coordinate);
-  return (trajectory.q.col(c) - desired.col(c)).cwiseAbs().maxCoeff();
+  return (trajectory.q.col(coordinate) - desired.col(coordinate)).cwiseAbs().maxCoeff();
 }
 
 MuscleResult run_study(const MuscleStudy& study, Progress& progress) {

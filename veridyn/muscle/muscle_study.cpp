@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "veridyn/core/enum_array.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/muscle_study_parts.hpp"
 
 namespace veridyn::muscle {
@@ -33,9 +32,9 @@ internal::ReadFromFiles<Motion> read_motion_file(const StudyTable& motion, const
   for (const std::string& name : read.value.beyond_range)
     read.warnings.push_back(fmt::format("the desired '{}' leaves its range", name));
   for (const int c : study.system->reduction().driven()) {
-    if (study.method == MuscleMethod::kComputedMuscleControl && read.value.coordinate[at(c)])
+    if (study.method == MuscleMethod::kComputedMuscleControl && read.value.coordinate[c])
       read.warnings.push_back(fmt::format("'{}' is locked: it is held where the motion has it at the beginning",
-                                          study.system->model().coordinates[at(c)].name));
+                                          study.system->model().coordinates[c].name));
   }
   return read;
 }
@@ -130,7 +129,7 @@ void check_contact(const StudyTable& subject, const MuscleStudy& study) {
         subject.fail("without_contact",
                      fmt::format("is needed: external load '{}' and the model's contact '{}' both act on body '{}'; "
                                  "true leaves the contacts out, false keeps them",
-                                 load.name, contact.name, model.bodies[at(load.body)].name));
+                                 load.name, contact.name, model.bodies[load.body].name));
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ std::vector<ControlSignals> read_envelopes(const SignalTable& table, const EmgSe
                                    "[emg.columns], or is named in emg.resting",
                                    name, muscles_of(settings, model, i), suggestion(name, table.names)));
     check_envelope(table, at(column), name, settings.maximum[i]);
-    std::vector<double> values = table.values[at(column)];
+    std::vector<double> values = table.values[column];
     for (double& v : values) v = std::clamp(v / settings.maximum[i], 0.0, 1.0);
     emg.emplace_back(table.time, std::move(values), 1, Interpolation::kLinear);
   }
@@ -124,13 +124,12 @@ void check_capacity(const SignalTable& table, const MuscleSubject& subject, std:
     for (Eigen::Index k = 0; k < poses.arm.rows(); ++k) {
       double sum = 0.0;
       for (std::size_t m = 0; m < muscles; ++m)
-        sum += std::abs(poses.arm(k, signed_index(o * muscles + m))) *
-               system.muscles().settings(m).musculotendon.max_isometric_force;
+        sum += std::abs(poses.arm(k, o * muscles + m)) * system.muscles().settings(m).musculotendon.max_isometric_force;
       capacity = std::max(capacity, sum);
     }
     bool any = false;
     for (Eigen::Index k = 0; k < recording.measured.rows(); ++k) {
-      const double value = std::abs(recording.measured(k, signed_index(o)));
+      const double value = std::abs(recording.measured(k, o));
       any = any || !std::isnan(value);
       if (value > peak) peak = value;
     }
@@ -177,21 +176,20 @@ ComparedOutputs outputs_within(const MeasuredMotion& measured, const MuscleSubje
                     measured.time.front(), measured.time.back(), recording.begin, end, kFewest, settings.settle_s));
   const Model& model = subject.system->model();
   ComparedOutputs compared;
-  compared.values.resize(signed_index(rows.size()), signed_index(outputs.size()));
+  compared.values.resize(rows.size(), outputs.size());
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    compared.time.push_back(measured.time[at(rows[k])]);
-    compared.values.row(signed_index(k)) = measured.values.row(rows[k]);
+    compared.time.push_back(measured.time[rows[k]]);
+    compared.values.row(k) = measured.values.row(rows[k]);
     Eigen::VectorXd q = recording.rest, qdot = Eigen::VectorXd::Zero(q.size()), limit = qdot;
     for (std::size_t c = 0; c < recording.angles.coordinate.size(); ++c) {
       if (!recording.angles.coordinate[c]) continue;
       const auto value = recording.angles.coordinate[c]->evaluate(compared.time.back());
-      q(signed_index(c)) = value.value;
-      qdot(signed_index(c)) = value.slope;
+      q(c) = value.value;
+      qdot(c) = value.slope;
     }
     add_coordinate_forces<double>(model, q.data(), qdot.data(), limit.data());
     for (std::size_t o = 0; o < outputs.size(); ++o)
-      if (outputs[o].kind == MuscleOutputKind::kMoment)
-        compared.values(signed_index(k), signed_index(o)) -= limit(outputs[o].index);
+      if (outputs[o].kind == MuscleOutputKind::kMoment) compared.values(k, o) -= limit(outputs[o].index);
   }
   return compared;
 }
@@ -240,7 +238,7 @@ EmgSettings read_emg(const StudyTable& table, const Model& model) {
     const auto found = std::find(s.signals.begin(), s.signals.end(), key);
     if (found == s.signals.end())
       maximum.fail(key, fmt::format("is no column of the EMG{}", suggestion(key, s.signals)));
-    s.maximum[at(found - s.signals.begin())] = maximum.positive(key, "1");
+    s.maximum[found - s.signals.begin()] = maximum.positive(key, "1");
   }
   return s;
 }

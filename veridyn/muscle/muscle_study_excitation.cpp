@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/muscle_study_parts.hpp"
 
 namespace veridyn::muscle::internal {
@@ -37,13 +36,12 @@ ControlSignals reserves_of(const SignalTable& table, const MusculoskeletalSystem
   std::vector<double> values(table.time.size() * n, 0.0);
   bool any = false;
   for (const int c : system.reduction().free()) {
-    const auto i = static_cast<std::size_t>(c);
-    const int column = table.find(model.coordinates[i].name + "_reserve", "control");
+    const int column = table.find(model.coordinates[c].name + "_reserve", "control");
     if (column < 0) continue;
     any = true;
     // Where there is no reserve, a file has what the muscles lacked in newtons or newton metres.
-    const double force = reserves[i] > 0.0 ? reserves[i] : 1.0;
-    for (std::size_t k = 0; k < table.time.size(); ++k) values[k * n + i] = force * table.values[at(column)][k];
+    const double force = reserves[c] > 0.0 ? reserves[c] : 1.0;
+    for (std::size_t k = 0; k < table.time.size(); ++k) values[k * n + c] = force * table.values[column][k];
   }
   if (!any) return {};
   return without_repeats({table.time, std::move(values), n, interpolation});

@@ -29,7 +29,7 @@ std::vector<std::vector<Ramp>> read_ramps(const StudyTable& motion, const Muscle
     }
     const Ramp* before = ramps[c].empty() ? nullptr : &ramps[c].back();
     const RampOrigin origin{.before = before,
-                            .rest = study.start.q(static_cast<Eigen::Index>(c)),
+                            .rest = study.start.q(c),
                             .rest_is_given = pose.has(name),
                             .rest_key = "motion.start",
                             .begin = study.begin};
@@ -75,7 +75,7 @@ DesiredMotion read_desired_motion(const StudyTable& motion, const MuscleStudy& s
     if (own) {
       desired.coordinates.push_back(model.coordinates[c].name);
     } else {
-      own = resting_spline(study.start.q(static_cast<Eigen::Index>(c)));
+      own = resting_spline(study.start.q(c));
     }
   }
   if (desired.coordinates.empty()) {

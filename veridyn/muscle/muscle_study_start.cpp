@@ -14,7 +14,7 @@ namespace {
 /// The value of a column at a time, linear between samples.
 double value_at(const SignalTable& table, int column, double time) {
   const std::vector<double>& t = table.time;
-  const std::vector<double>& v = table.values[at(column)];
+  const std::vector<double>& v = table.values[column];
   const auto after = static_cast<std::size_t>(std::upper_bound(t.begin(), t.end(), time) - t.begin());
   if (after == 0) return v.front();
   if (after == t.size() || t[after - 1] == time) return v[after - 1];
@@ -43,7 +43,7 @@ StartState read_start(const StudyTable& motion, const MuscleStudy& study) {
   for (const std::string& key : pose.keys()) {
     const std::size_t c = coordinate_of(pose, key, key, model);
     check_not_coupled(pose, key, c, study);
-    start.q(static_cast<Eigen::Index>(c)) = coordinate_value(pose, key, model.coordinates[c]);
+    start.q(c) = coordinate_value(pose, key, model.coordinates[c]);
     if (study.method != MuscleMethod::kForward && study.motion.coordinate[c])
       pose.fail(key, "and motion.file both say where it is");
   }
@@ -52,7 +52,7 @@ StartState read_start(const StudyTable& motion, const MuscleStudy& study) {
     const std::size_t c = coordinate_of(speed, key, key, model);
     check_not_coupled(speed, key, c, study);
     const double value = speed.number(key, model.coordinates[c].unit() + "/s");
-    if (study.method == MuscleMethod::kForward) start.qdot(static_cast<Eigen::Index>(c)) = value;
+    if (study.method == MuscleMethod::kForward) start.qdot(c) = value;
   }
   return start;
 }
@@ -78,18 +78,17 @@ ReadFromFiles<StartState> read_start_file(const StudyTable& motion, const Muscle
   bool any = false;
   for (std::size_t c = 0; c < model.coordinates.size(); ++c) {
     const Coordinate& coordinate = model.coordinates[c];
-    const auto i = static_cast<Eigen::Index>(c);
     const bool degrees = table.rotations_in_degrees && coordinate.motion == CoordinateMotion::kRotational;
     const double unit = degrees ? kDegree : 1.0;
     any = any || state_column(table, coordinate.name, "value") >= 0;
-    start.q(i) = unit * value(coordinate.name, "value", start.q(i) / unit);
-    start.qdot(i) = unit * value(coordinate.name, "speed", start.qdot(i) / unit);
+    start.q(c) = unit * value(coordinate.name, "value", start.q(c) / unit);
+    start.qdot(c) = unit * value(coordinate.name, "speed", start.qdot(c) / unit);
   }
   if (!any) motion.fail("start_file", fmt::format("{} has no column of a coordinate's value", path.string()));
   Eigen::VectorXd activation(muscles), fiber(muscles);
   bool all = true;
   for (Eigen::Index m = 0; m < muscles; ++m) {
-    const MuscleParameters& p = model.muscles[at(m)].parameters;
+    const MuscleParameters& p = model.muscles[m].parameters;
     activation(m) = value(p.name, "activation", std::nan(""));
     fiber(m) = value(p.name, "fiber_length", std::nan(""));
     const bool needs_activation = !p.ignore_activation_dynamics, needs_fiber = !p.rigid_tendon;

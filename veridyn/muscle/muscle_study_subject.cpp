@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "veridyn/core/index.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/muscle/identification/normalised_fiber_lengths.hpp"
 #include "veridyn/muscle/muscle_study_parts.hpp"
@@ -96,7 +95,7 @@ ReadFromFiles<MatchedLengths> matched_to_reference(const StudyTable& subject, co
   const SystemOptions paths_only{.without_unsupported = true};
   const MusculoskeletalSystem reference(file.model(), paths_only), own(model, paths_only);
   for (const MatchedFiber& fiber : match_fiber_lengths(reference, own)) {
-    const std::string& name = own.model().muscles[at(fiber.muscle)].name();
+    const std::string& name = own.model().muscles[fiber.muscle].name();
     if (!fiber.usable()) {
       read.warnings.push_back(fmt::format("{} keeps its own fibre and tendon lengths: {}", name, fiber.obstacle));
       continue;
@@ -106,8 +105,7 @@ ReadFromFiles<MatchedLengths> matched_to_reference(const StudyTable& subject, co
           fmt::format("{}: normalised fibre lengths still differ from the reference's by {:.2g} (root mean square): "
                       "another path, or other curves",
                       name, fiber.error));
-    MusculotendonParameters<double>& lengths =
-        read.value.model.muscles[at(model.muscle(name))].parameters.musculotendon;
+    MusculotendonParameters<double>& lengths = read.value.model.muscles[model.muscle(name)].parameters.musculotendon;
     const auto set = [&](const char* parameter, double& target, double value) {
       read.value.changes.push_back({name, parameter, target, value});
       target = value;

@@ -155,7 +155,7 @@ TaskMotion read_task_ramps(const StudyTable& table, const MuscleSubject& subject
   const StudyTable pose = table.table_or_empty("start");
   std::vector<std::vector<Ramp>> ramps(model.coordinates.size());
   std::vector<double> at_rest(rest.begin(), rest.end());
-  for (const HeldCoordinate& start : read_pose(pose, subject)) at_rest[at(start.coordinate)] = start.value;
+  for (const HeldCoordinate& start : read_pose(pose, subject)) at_rest[start.coordinate] = start.value;
   TaskMotion motion{.desired = task.desired, .end = task.end};
   for (const StudyTable& ramp : table.tables("ramp")) {
     const std::string name = ramp.text("coordinate");
@@ -218,7 +218,7 @@ internal::ReadFromFiles<Task> with_measured(const StudyTable& table, const Muscl
   task.end = time.back();
   // Where nothing else says it, the pose is that of the first sample.
   for (std::size_t j = 0; j < outputs.size(); ++j) {
-    const double first = task.measured->values(0, signed_index(j));
+    const double first = task.measured->values(0, j);
     const auto c = at(outputs[j].index);
     if (outputs[j].kind != MuscleOutputKind::kValue || !std::isfinite(first)) continue;
     if (!is_held(task.held, c)) task.desired.coordinate[c] = resting_spline(first);
@@ -264,7 +264,7 @@ Task started_task(const StudyTable& table, const ElbowTaskOptions& shared) {
 
 /// Motion in which what is held rests.
 Motion holding(Motion motion, std::span<const HeldCoordinate> held) {
-  for (const HeldCoordinate& h : held) motion.coordinate[at(h.coordinate)] = resting_spline(h.value);
+  for (const HeldCoordinate& h : held) motion.coordinate[h.coordinate] = resting_spline(h.value);
   return motion;
 }
 
@@ -282,7 +282,7 @@ internal::ReadFromFiles<Task> read_recorded_task(const StudyTable& table, const 
   for (const auto& pose : {task.held, read_pose(table.table_or_empty("start"), subject)}) {
     for (const HeldCoordinate& at_rest : pose) {
       rest(at_rest.coordinate) = at_rest.value;
-      given[at(at_rest.coordinate)] = 1;
+      given[at_rest.coordinate] = 1;
     }
   }
   EmgTask read = read_emg_recording(table, subject, emg, outputs, rest, given);

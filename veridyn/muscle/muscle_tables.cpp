@@ -9,7 +9,7 @@ namespace {
 
 std::vector<double> column(const estimation::RowMatrix& matrix, std::size_t index) {
   std::vector<double> values(static_cast<std::size_t>(matrix.rows()));
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) values[at(i)] = matrix(i, static_cast<Eigen::Index>(index));
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) values[i] = matrix(i, index);
   return values;
 }
 
@@ -63,7 +63,7 @@ Recording reaction_table(const MuscleStudy& study, const MuscleResult& result) {
   recording.source = study.title;
   const JointReactions& reactions = *result.reactions;
   for (std::size_t k = 0; k < reactions.joints.size(); ++k) {
-    const std::string& name = study.system->model().joints[at(reactions.joints[k])].name;
+    const std::string& name = study.system->model().joints[reactions.joints[k]].name;
     for (std::size_t axis = 0; axis < 3; ++axis)
       recording.add(
           make_channel(fmt::format("{}_f{}", name, "xyz"[axis]), "N", time, column(reactions.force, 3 * k + axis)));
@@ -95,7 +95,7 @@ io::Storage state_storage(const MuscleStudy& study, const MuscleResult& result) 
   };
   for (std::size_t c = 0; c < model.coordinates.size(); ++c) {
     const Coordinate& k = model.coordinates[c];
-    const std::string place = fmt::format("/jointset/{}/{}", model.joints[at(k.joint)].name, k.name);
+    const std::string place = fmt::format("/jointset/{}/{}", model.joints[k.joint].name, k.name);
     add(place + "/value", t.q, c);
     add(place + "/speed", t.qdot, c);
   }
@@ -126,7 +126,7 @@ std::optional<io::Storage> control_storage(const MuscleStudy& study, const Muscl
   storage.source = "controls.sto";
   storage.name = "controls";
   for (const Muscle& m : model.muscles) storage.labels.push_back(m.name());
-  for (const int c : reserved) storage.labels.push_back(model.coordinates[at(c)].name + "_reserve");
+  for (const int c : reserved) storage.labels.push_back(model.coordinates[c].name + "_reserve");
   // All instants at which either of them has a sample.
   std::vector<double> times(excitation.times().begin(), excitation.times().end());
   if (!reserved.empty()) times.insert(times.end(), reserve.times().begin(), reserve.times().end());
@@ -141,8 +141,7 @@ std::optional<io::Storage> control_storage(const MuscleStudy& study, const Muscl
     storage.time.push_back(time);
     storage.values.insert(storage.values.end(), u.begin(), u.end());
     // Without an optimal force, what the muscles lacked is in newtons or newton metres.
-    for (const int c : reserved)
-      storage.values.push_back(r[at(c)] / (study.reserves[at(c)] > 0.0 ? study.reserves[at(c)] : 1.0));
+    for (const int c : reserved) storage.values.push_back(r[c] / (study.reserves[c] > 0.0 ? study.reserves[c] : 1.0));
   };
   constexpr double kJust = 1e-9;  // before a jump [s]
   for (std::size_t i = 0; i < times.size(); ++i) {

@@ -23,7 +23,7 @@ double noise_of(const TaskStudy& study, const MuscleOutput& output) {
 std::vector<RowMatrix> simulate_person(const TaskStudy& study, const std::vector<PreparedTask>& tasks,
                                        TaskRecordings& out, const Progress& progress) {
   const Eigen::VectorXd hidden = internal::hidden_values(study);
-  for (std::size_t i = 0; i < study.unknowns.size(); ++i) out.truth[study.unknowns[i].name] = hidden(signed_index(i));
+  for (std::size_t i = 0; i < study.unknowns.size(); ++i) out.truth[study.unknowns[i].name] = hidden(i);
   std::vector<std::shared_ptr<const MusculoskeletalSystem>> systems;
   std::vector<MotionSegment> segments = segments_of(tasks);
   for (std::size_t s = 0; s < segments.size(); ++s) {
@@ -41,8 +41,7 @@ std::vector<RowMatrix> simulate_person(const TaskStudy& study, const std::vector
       noise.emplace_back(output.kind == MuscleOutputKind::kValue ? study.person->noise_correlation_s : 0.0);
     for (Eigen::Index k = 0; k < measured[s].rows(); ++k) {
       for (std::size_t j = 0; j < study.outputs.size(); ++j)
-        measured[s](k, signed_index(j)) +=
-            noise_of(study, study.outputs[j]) * noise[j].next(tasks[s].time[at(k)], random);
+        measured[s](k, signed_index(j)) += noise_of(study, study.outputs[j]) * noise[j].next(tasks[s].time[k], random);
     }
   }
   return measured;
@@ -84,8 +83,8 @@ TaskRecordings recorded_forward_tasks(const TaskStudy& study, Progress& progress
 }  // namespace
 
 Eigen::VectorXd start_values(const std::vector<MuscleUnknown>& unknowns) {
-  Eigen::VectorXd theta(signed_index(unknowns.size()));
-  for (std::size_t i = 0; i < unknowns.size(); ++i) theta(signed_index(i)) = unknowns[i].start;
+  Eigen::VectorXd theta(unknowns.size());
+  for (std::size_t i = 0; i < unknowns.size(); ++i) theta(i) = unknowns[i].start;
   return theta;
 }
 
@@ -119,7 +118,7 @@ Eigen::VectorXd hidden_values(const TaskStudy& study) {
                                : u.start * (1.0 + study.person->spread * spread);
     if (u.fixed) continue;
     const auto set = study.person->values.find(u.name);
-    theta(signed_index(i)) = set != study.person->values.end() ? set->second : std::clamp(drawn, u.low, u.high);
+    theta(i) = set != study.person->values.end() ? set->second : std::clamp(drawn, u.low, u.high);
   }
   return theta;
 }
@@ -128,7 +127,7 @@ std::shared_ptr<const MusculoskeletalSystem> person_system(const TaskStudy& stud
   SystemChanges changes{.loads = task.loads};
   for (HeldLoad& load : changes.loads) load.mass *= study.person->load_factor;
   const Model& model = study.subject.system->model();
-  for (const HeldCoordinate& held : task.held) changes.locked.push_back(model.coordinates[at(held.coordinate)].name);
+  for (const HeldCoordinate& held : task.held) changes.locked.push_back(model.coordinates[held.coordinate].name);
   changes.muscles = muscle_parameters(model);
   for (MuscleParameters& muscle : changes.muscles) {
     if (!study.person->millard) continue;

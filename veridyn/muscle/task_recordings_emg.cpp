@@ -70,7 +70,7 @@ ControlSignals by_muscle(const std::vector<ControlSignals>& signals, const EmgSe
   std::vector<double> values;
   for (std::size_t k = 0; k < time.size(); ++k) {
     constexpr double kLeast = 0.01;
-    for (const int s : emg.signal_of) values.push_back(s < 0 ? kLeast : signals[at(s)].row(k)[0]);
+    for (const int s : emg.signal_of) values.push_back(s < 0 ? kLeast : signals[s].row(k)[0]);
   }
   return {{time.begin(), time.end()}, std::move(values), emg.signal_of.size(), Interpolation::kLinear};
 }
@@ -103,11 +103,11 @@ Motion recorded_angles(const TaskStudy& study, const PreparedTask& task, const R
   numerics::RandomStream random(study.seed, "angles of " + task.task.name);
   SignalTable table{.source = task.task.name, .names = {}, .time = task.time, .values = {}};
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
-    table.names.push_back(study.subject.system->model().coordinates[at(coordinates[i])].name);
+    table.names.push_back(study.subject.system->model().coordinates[coordinates[i]].name);
     std::vector<double> values;
     RecordingNoise noise(study.person->noise_correlation_s);
     for (Eigen::Index k = 0; k < q.rows(); ++k)
-      values.push_back(q(k, signed_index(i)) + study.person->noise * noise.next(task.time[at(k)], random));
+      values.push_back(q(k, i) + study.person->noise * noise.next(task.time[k], random));
     table.values.push_back(std::move(values));
   }
   return make_motion(table, study.subject.system->model(), {.low_pass_Hz = study.emg->low_pass_Hz});
@@ -142,17 +142,16 @@ std::optional<TaskRecording> recorded_of_person(const TaskStudy& study, const Pr
                                      {.accuracy = study.accuracy, .outputs = outputs});
   const RowMatrix all = simulate_tasks(person, hidden, 1).front();
   if (all.size() == 0) return std::nullopt;
-  const Motion angles = recorded_angles(study, task, all.leftCols(signed_index(coordinates.size())), coordinates);
+  const Motion angles = recorded_angles(study, task, all.leftCols(coordinates.size()), coordinates);
   numerics::RandomStream random(study.seed, "noise of " + task.task.name);
   std::vector<double> time;
-  RowMatrix measured(all.rows(), signed_index(study.outputs.size()));
+  RowMatrix measured(all.rows(), study.outputs.size());
   Eigen::Index rows = 0;
   for (Eigen::Index k = 0; k < all.rows(); ++k) {
-    if (task.time[at(k)] < task.task.begin + study.emg->settle_s) continue;
-    time.push_back(task.time[at(k)]);
+    if (task.time[k] < task.task.begin + study.emg->settle_s) continue;
+    time.push_back(task.time[k]);
     for (std::size_t j = 0; j < study.outputs.size(); ++j)
-      measured(rows, signed_index(j)) =
-          all(k, signed_index(coordinates.size() + j)) + study.outputs[j].noise_sd * random.normal();
+      measured(rows, j) = all(k, coordinates.size() + j) + study.outputs[j].noise_sd * random.normal();
     ++rows;
   }
   measured.conservativeResize(rows, Eigen::NoChange);
@@ -164,7 +163,7 @@ std::optional<TaskRecording> recorded_of_person(const TaskStudy& study, const Pr
 TaskRecordings of_person(const TaskStudy& study, Progress& progress) {
   TaskRecordings out;
   const Eigen::VectorXd hidden = hidden_values(study);
-  for (std::size_t i = 0; i < study.unknowns.size(); ++i) out.truth[study.unknowns[i].name] = hidden(signed_index(i));
+  for (std::size_t i = 0; i < study.unknowns.size(); ++i) out.truth[study.unknowns[i].name] = hidden(i);
   const MuscleValues values = values_at(study.subject.system->muscles(), study.unknowns, hidden);
   SystemChanges changes{.muscles = muscle_parameters(study.subject.system->model())};
   for (std::size_t m = 0; m < changes.muscles.size(); ++m) changes.muscles[m].musculotendon = values.muscles[m];

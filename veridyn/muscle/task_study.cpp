@@ -70,7 +70,7 @@ std::vector<Eigen::Index> moving_outputs(std::span<const Task> tasks, std::span<
   std::vector<Eigen::Index> moving;
   for (std::size_t j = 0; j < outputs.size(); ++j) {
     const bool moves = std::any_of(tasks.begin(), tasks.end(), [&](const Task& task) {
-      if (task.recording) return !task.recording->measured.col(signed_index(j)).array().isNaN().all();
+      if (task.recording) return !task.recording->measured.col(j).array().isNaN().all();
       return std::none_of(task.held.begin(), task.held.end(),
                           [&](const HeldCoordinate& h) { return h.coordinate == outputs[j].index; });
     });
@@ -136,7 +136,7 @@ SimulatedPerson read_person(const StudyTable& table, const TaskStudy& study) {
   for (const std::string& key : values.keys()) {
     const auto found = std::find(names.begin(), names.end(), key);
     if (found == names.end()) values.fail(key, fmt::format("is no unknown of this study{}", suggestion(key, names)));
-    const MuscleUnknown& u = study.unknowns[at(found - names.begin())];
+    const MuscleUnknown& u = study.unknowns[found - names.begin()];
     const double value = values.number(key, u.unit);
     if (!(value >= u.low && value <= u.high))
       values.fail(key, fmt::format("{:g} is outside the bounds {:g} .. {:g}, where no search would find it", value,
@@ -275,7 +275,7 @@ TaskStudy read_task_study(const Study& source, Progress& progress) {
   if (!chosen) {
     const std::vector<Eigen::Index> moving = moving_outputs(study.tasks, study.outputs);
     std::vector<MuscleOutput> outputs;
-    for (const Eigen::Index j : moving) outputs.push_back(study.outputs[at(j)]);
+    for (const Eigen::Index j : moving) outputs.push_back(study.outputs[j]);
     study.outputs = std::move(outputs);
     for (Task& task : study.tasks) task = with_columns(std::move(task), moving);
   }

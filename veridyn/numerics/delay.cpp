@@ -44,11 +44,10 @@ double correlation_at(const Centred& a, const Centred& b, std::ptrdiff_t lag) {
   const std::ptrdiff_t end = std::min(n, n - lag);
   double ab = 0.0, aa = 0.0, bb = 0.0;
   for (std::ptrdiff_t k = begin; k < end; ++k) {
-    const auto i = static_cast<std::size_t>(k);
     const auto j = static_cast<std::size_t>(k + lag);
-    ab += a.value[i] * b.value[j];
-    aa += a.value[i] * a.value[i] * b.known[j];
-    bb += b.value[j] * b.value[j] * a.known[i];
+    ab += a.value[k] * b.value[j];
+    aa += a.value[k] * a.value[k] * b.known[j];
+    bb += b.value[j] * b.value[j] * a.known[k];
   }
   return aa > 0.0 && bb > 0.0 ? ab / std::sqrt(aa * bb) : 0.0;
 }
@@ -60,7 +59,7 @@ double interpolated(const std::vector<double>& c, double position) {
     const double u = position - static_cast<double>(j);
     const double taper = std::cos(0.5 * kPi * u / static_cast<double>(kSincHalfWidth));
     const double sinc = std::abs(u) < 1e-12 ? 1.0 : std::sin(kPi * u) / (kPi * u);
-    sum += c[at(j)] * sinc * taper * taper;
+    sum += c[j] * sinc * taper * taper;
   }
   return sum;
 }
@@ -95,10 +94,9 @@ double delay_sigma(const Centred& a, const Centred& b, const DelayEstimate& foun
   const auto lag = static_cast<std::ptrdiff_t>(std::llround(found.delay_s * rate_Hz));
   std::vector<double> mismatch;
   for (std::ptrdiff_t k = std::max<std::ptrdiff_t>(0, -lag); k < std::min(n, n - lag); ++k) {
-    const auto i = static_cast<std::size_t>(k);
     const auto j = static_cast<std::size_t>(k + lag);
-    if (a.known[i] * b.known[j] > 0.0)
-      mismatch.push_back(b.value[j] / std::sqrt(b.power) - found.correlation * a.value[i] / std::sqrt(a.power));
+    if (a.known[k] * b.known[j] > 0.0)
+      mismatch.push_back(b.value[j] / std::sqrt(b.power) - found.correlation * a.value[k] / std::sqrt(a.power));
   }
   const double samples = std::max(1.0, effective_sample_size_variance(mismatch));
   return std::sqrt((1.0 - std::min(c2, 1.0)) / (c2 * samples * bandwidth2));
@@ -132,16 +130,16 @@ DelayEstimate estimate_delay(std::span<const double> reference, std::span<const 
   for (std::ptrdiff_t lag = -span; lag <= span; ++lag) c.push_back(correlation_at(a, b, lag));
   std::ptrdiff_t peak = 0;
   for (std::ptrdiff_t lag = -max_lag; lag <= max_lag; ++lag) {
-    if (std::abs(c[at(lag + span)]) > std::abs(c[at(peak + span)])) peak = lag;
+    if (std::abs(c[lag + span]) > std::abs(c[peak + span])) peak = lag;
   }
-  const double sign = c[at(peak + span)] < 0.0 ? -1.0 : 1.0;
+  const double sign = c[peak + span] < 0.0 ? -1.0 : 1.0;
   const double position = refined_peak(c, static_cast<double>(peak + span), sign);
   result.delay_s = (position - static_cast<double>(span)) / rate_Hz;
   result.correlation = std::clamp(interpolated(c, position), -1.0, 1.0);
-  result.at_zero = c[at(span)];
+  result.at_zero = c[span];
   for (std::ptrdiff_t i = span - max_lag; i <= span + max_lag; ++i) {
-    const double here = std::abs(c[at(i)]);
-    const bool maximum = here >= std::abs(c[at(i - 1)]) && here >= std::abs(c[at(i + 1)]);
+    const double here = std::abs(c[i]);
+    const bool maximum = here >= std::abs(c[i - 1]) && here >= std::abs(c[i + 1]);
     if (maximum && std::abs(static_cast<double>(i) - position) > 1.5) {
       result.side_peak = std::max(result.side_peak, here / std::abs(result.correlation));
     }

@@ -8,7 +8,6 @@
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 
 namespace veridyn::numerics {
@@ -105,14 +104,14 @@ FirKernel low_pass(const LowPassDesign& design) {
   const double cutoff = kPi * (design.stop_Hz + design.pass_Hz) / design.rate_Hz;
   FirKernel kernel;
   kernel.rate_Hz = design.rate_Hz;
-  kernel.taps.resize(static_cast<std::size_t>(2 * m + 1));
+  kernel.taps.resize(2 * m + 1);
   double sum = 0.0;
   for (std::ptrdiff_t j = -m; j <= m; ++j) {
     const auto n = static_cast<double>(j);
     const double sinc = j == 0 ? cutoff / kPi : std::sin(cutoff * n) / (kPi * n);
     const double u = n / static_cast<double>(m);
     const double tap = sinc * bessel_i0(beta * std::sqrt(std::max(0.0, 1.0 - u * u))) / bessel_i0(beta);
-    kernel.taps[at(j + m)] = tap;
+    kernel.taps[j + m] = tap;
     sum += tap;
   }
   for (double& tap : kernel.taps) tap /= sum;
@@ -129,25 +128,23 @@ FirKernel low_pass_differentiator(const LowPassDesign& design) {
   std::vector<double> tap(static_cast<std::size_t>(wide + 1), 0.0), correction(tap);
   double slope = 0.0, correction_slope = 0.0;
   for (std::ptrdiff_t k = 1; k <= wide; ++k) {
-    const auto index = static_cast<std::size_t>(k);
     for (std::ptrdiff_t j = -m; j <= m; ++j) {
       const std::ptrdiff_t n = k - j;
       if (n == 0) continue;
       // y_k = sum taps x_{k+j}: the ideal differentiator weights x_{k+n} by -(-1)^n/n.
-      tap[index] -= smoother.taps[at(j + m)] * ((n % 2 == 0) ? 1.0 : -1.0) / static_cast<double>(n);
+      tap[k] -= smoother.taps[j + m] * ((n % 2 == 0) ? 1.0 : -1.0) / static_cast<double>(n);
     }
     const double u = static_cast<double>(k) / static_cast<double>(wide);
-    correction[index] = static_cast<double>(k) * (1.0 - u * u) * (1.0 - u * u);
-    slope += 2.0 * static_cast<double>(k) * tap[index];
-    correction_slope += 2.0 * static_cast<double>(k) * correction[index];
+    correction[k] = static_cast<double>(k) * (1.0 - u * u) * (1.0 - u * u);
+    slope += 2.0 * static_cast<double>(k) * tap[k];
+    correction_slope += 2.0 * static_cast<double>(k) * correction[k];
   }
   // What was cut off is missing at 0 Hz: added by a short pulse of low frequency instead of by scaling all frequencies.
   const double missing = (1.0 - slope) / correction_slope;
   for (std::ptrdiff_t k = 1; k <= wide; ++k) {
-    const auto index = static_cast<std::size_t>(k);
-    const double value = design.rate_Hz * (tap[index] + missing * correction[index]);
-    kernel.taps[at(wide + k)] = value;
-    kernel.taps[at(wide - k)] = -value;
+    const double value = design.rate_Hz * (tap[k] + missing * correction[k]);
+    kernel.taps[wide + k] = value;
+    kernel.taps[wide - k] = -value;
   }
   return kernel;
 }
@@ -180,7 +177,7 @@ void filter(std::span<const double> x, const FirKernel& kernel, std::span<double
     }
     if (n < m + 1) continue;
     padded.resize(n + 2 * m);
-    std::copy(s, s + n, padded.begin() + static_cast<std::ptrdiff_t>(m));
+    std::copy(s, s + n, padded.begin() + m);
     for (std::size_t j = 1; j <= m; ++j) {
       padded[m - j] = 2.0 * s[0] - s[j];
       padded[m + n - 1 + j] = 2.0 * s[n - 1] - s[n - 1 - j];
@@ -245,8 +242,8 @@ void SavitzkyGolay::apply(std::span<const double> x, std::span<double> out) cons
     const Vector first(s, taps_.rows());
     const Vector last(s + n - count, taps_.rows());
     for (std::size_t j = 0; j < m; ++j) {
-      y[j] = taps_.col(static_cast<Eigen::Index>(j)).dot(first);
-      y[n - 1 - j] = taps_.col(static_cast<Eigen::Index>(count - 1 - j)).dot(last);
+      y[j] = taps_.col(j).dot(first);
+      y[n - 1 - j] = taps_.col(count - 1 - j).dot(last);
     }
   }
 }

@@ -59,7 +59,7 @@ NoiseEstimate measurement_noise(std::span<const double> x, double rate_Hz, doubl
   std::vector<double> density;
   for (const auto& [begin, end] : stretches) {
     for (std::size_t start = begin; start + length <= end; start += length / 2) {
-      std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(start), length, window.begin());
+      std::copy_n(x.begin() + start, length, window.begin());
       detrend(window);
       for (std::size_t k = 0; k < length; ++k) window[k] *= taper[k];
       fft.fwd(spectrum, window);

@@ -20,7 +20,7 @@ std::vector<double> knots_of(std::span<const double> x, std::size_t p) {
 
 /// Index i with knots[i] <= x < knots[i + 1], the last one at the right end.
 std::size_t knot_span(const std::vector<double>& knots, std::size_t p, double x) {
-  const auto begin = knots.begin() + static_cast<std::ptrdiff_t>(p);
+  const auto begin = knots.begin() + p;
   const auto end = knots.end() - static_cast<std::ptrdiff_t>(p) - 1;
   const auto after = std::upper_bound(begin, end, x);
   return static_cast<std::size_t>(std::max(after - knots.begin(), begin - knots.begin() + 1)) - 1;
@@ -87,14 +87,12 @@ PiecewisePolynomial PiecewisePolynomial::quintic_spline(std::span<const double> 
     c.push_back(std::move(next));
   }
   std::vector<std::array<double, 6>> coefficients(knots.size() - 2 * p - 1);
-  const std::vector<double> breaks(knots.begin() + static_cast<std::ptrdiff_t>(p),
-                                   knots.end() - static_cast<std::ptrdiff_t>(p) - 1);
+  const std::vector<double> breaks(knots.begin() + p, knots.end() - static_cast<std::ptrdiff_t>(p) - 1);
   double factorial = 1.0;
   for (std::size_t d = 0; d <= p; ++d) {
     if (d > 0) factorial *= static_cast<double>(d);
     // The derivative is a spline of degree p - d whose knots lack d at each end.
-    const std::vector<double> inner(knots.begin() + static_cast<std::ptrdiff_t>(d),
-                                    knots.end() - static_cast<std::ptrdiff_t>(d));
+    const std::vector<double> inner(knots.begin() + d, knots.end() - d);
     for (std::size_t piece = 0; piece < breaks.size(); ++piece) {
       const std::array<double, 6> b = basis(inner, p - d, piece + p - d, breaks[piece]);
       double value = 0.0;

@@ -169,7 +169,7 @@ std::vector<double> resample(std::span<const double> time, std::span<const doubl
   const auto stride = static_cast<std::ptrdiff_t>(fine_per_step);
   for (std::size_t k = 0; k < grid.count; ++k) {
     const std::ptrdiff_t index = offset + static_cast<std::ptrdiff_t>(k) * stride;
-    if (index >= 0 && index < signed_index(smooth.size())) out[k] = smooth[at(index)];
+    if (index >= 0 && index < signed_index(smooth.size())) out[k] = smooth[index];
   }
   return out;
 }

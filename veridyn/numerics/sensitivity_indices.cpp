@@ -8,7 +8,6 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/random.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -21,11 +20,9 @@ struct Rows {
   const Eigen::VectorXd* y = nullptr;
   std::size_t samples = 0;
 
-  [[nodiscard]] double A(std::size_t row) const { return (*y)(static_cast<Eigen::Index>(row)); }
-  [[nodiscard]] double B(std::size_t row) const { return (*y)(static_cast<Eigen::Index>(samples + row)); }
-  [[nodiscard]] double mixed(std::size_t input, std::size_t row) const {
-    return (*y)(static_cast<Eigen::Index>((2 + input) * samples + row));
-  }
+  [[nodiscard]] double A(std::size_t row) const { return (*y)(row); }
+  [[nodiscard]] double B(std::size_t row) const { return (*y)(samples + row); }
+  [[nodiscard]] double mixed(std::size_t input, std::size_t row) const { return (*y)((2 + input) * samples + row); }
 };
 
 /// The replicate of the sequence that a row belongs to.
@@ -99,12 +96,12 @@ Eigen::MatrixXd shifted_sobol_points(std::size_t points, const std::vector<std::
   if (shift.empty() || shift.size() > kMostDimensions)
     throw InputError("sobol sequence", fmt::format("{} dimensions; must be 1 to {}", shift.size(), kMostDimensions));
   boost::random::sobol sequence(shift.size());
-  Eigen::MatrixXd x(static_cast<Eigen::Index>(points), signed_index(shift.size()));
+  Eigen::MatrixXd x(points, shift.size());
   for (Eigen::Index i = 0; i < x.rows(); ++i) {
     for (Eigen::Index j = 0; j < x.cols(); ++j) {
       // The sequence's first point, the origin, which Boost leaves out: without it 2^m points are not balanced.
       const std::uint64_t point = i == 0 ? 0 : sequence();
-      const std::uint64_t bits = point ^ shift[at(j)];
+      const std::uint64_t bits = point ^ shift[j];
       x(i, j) = static_cast<double>(bits >> 11) * 0x1.0p-53;
     }
   }
@@ -142,8 +139,7 @@ Eigen::MatrixXd variance_design(std::size_t inputs, const SensitivityOptions& op
   for (std::size_t from = 0; from < options.samples;) {
     std::size_t end = from;
     while (end < options.samples && replicate_of(end, options) == replicate_of(from, options)) ++end;
-    both.middleRows(static_cast<Eigen::Index>(from), static_cast<Eigen::Index>(end - from)) =
-        shifted_sobol_points(end - from, random_shift(2 * inputs, random));
+    both.middleRows(from, end - from) = shifted_sobol_points(end - from, random_shift(2 * inputs, random));
     from = end;
   }
   Eigen::MatrixXd design(n * (k + 2), k);
@@ -195,7 +191,7 @@ Eigen::MatrixXd morris_design(std::size_t inputs, std::size_t trajectories, std:
   RandomStream random(seed, "trajectories of Morris");
   const double spacing = 1.0 / static_cast<double>(levels - 1);
   const double step = 0.5 * static_cast<double>(levels) * spacing;
-  Eigen::MatrixXd design(static_cast<Eigen::Index>(trajectories * (inputs + 1)), static_cast<Eigen::Index>(inputs));
+  Eigen::MatrixXd design(trajectories * (inputs + 1), static_cast<Eigen::Index>(inputs));
   std::vector<std::size_t> order(inputs);
   for (std::size_t t = 0; t < trajectories; ++t) {
     auto row = static_cast<Eigen::Index>(t * (inputs + 1));
@@ -203,14 +199,13 @@ Eigen::MatrixXd morris_design(std::size_t inputs, std::size_t trajectories, std:
       order[i] = i;
       // Of the lower half of the grid, so that a step up stays inside; half of the walks' inputs step down instead.
       const double low = static_cast<double>(random.index(levels / 2)) * spacing;
-      design(row, static_cast<Eigen::Index>(i)) = random.index(2) == 0 ? low : low + step;
+      design(row, i) = random.index(2) == 0 ? low : low + step;
     }
     for (std::size_t i = inputs; i-- > 1;) std::swap(order[i], order[random.index(i + 1)]);
     for (const std::size_t i : order) {
-      const auto column = static_cast<Eigen::Index>(i);
       design.row(row + 1) = design.row(row);
       ++row;
-      design(row, column) += design(row, column) < 0.5 ? step : -step;
+      design(row, i) += design(row, i) < 0.5 ? step : -step;
     }
   }
   return design;
@@ -228,7 +223,7 @@ std::vector<MorrisEffect> morris_effects(const Eigen::MatrixXd& design, const Ei
       Eigen::Index moved = 0;
       (design.row(row + 1) - design.row(row)).cwiseAbs().maxCoeff(&moved);
       const double step = design(row + 1, moved) - design(row, moved);
-      effects[at(moved)].push_back((results(row + 1) - results(row)) / step);
+      effects[moved].push_back((results(row + 1) - results(row)) / step);
     }
   }
   std::vector<MorrisEffect> result(effects.size());

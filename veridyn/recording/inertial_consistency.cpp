@@ -176,9 +176,9 @@ RegressionData Equations::data(Eigen::Index unknowns) const {
   data.segment.resize(3 * rows_.size());
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     for (Eigen::Index k = 0; k < n; ++k) {
-      data.regressors.row(axis * n + k) = rows_[at(k)].X.row(axis).head(unknowns);
-      data.regressand(axis * n + k) = rows_[at(k)].z(axis);
-      data.segment[at(axis * n + k)] = static_cast<int>(axis);
+      data.regressors.row(axis * n + k) = rows_[k].X.row(axis).head(unknowns);
+      data.regressand(axis * n + k) = rows_[k].z(axis);
+      data.segment[axis * n + k] = static_cast<int>(axis);
     }
   }
   for (Eigen::Index j = 0; j < unknowns; ++j) data.parameter_names.push_back(fmt::format("n{}", j));
@@ -303,7 +303,7 @@ std::optional<SensorMatrix> compare_rates(const Recording& recording, const Iner
     const auto from = s.angle[1].begin() + signed_index(first);
     if (!(on_grid.end > on_grid.begin) || std::any_of(from, from + signed_index(last - first) + 1, steep)) continue;
     Vector3 change;
-    for (std::size_t i = 0; i < 3; ++i) change(signed_index(i)) = s.angle[i][last] - s.angle[i][first];
+    for (std::size_t i = 0; i < 3; ++i) change(i) = s.angle[i][last] - s.angle[i][first];
     const auto X = mean_over(on_grid, s.grid, [&](std::size_t k) {
       return regressors(euler_rate_matrix(s.angle[0][k], s.angle[1][k]), s.w(k));
     });

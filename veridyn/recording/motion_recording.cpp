@@ -158,7 +158,7 @@ RecordedMotion motion_samples(const Recording& recording, const MotionOptions& o
     s.force = {a[k][0], a[k][1], a[k][2]};
     if (!gravity) s.force += s.attitude.conjugate() * at_rest;
     s.force_from = gravity && z ? Origin::kMeasured : Origin::kDerived;
-    for (std::size_t i = 0; i < 3; ++i) s.rate(static_cast<Eigen::Index>(i)) = rates[i] ? (*rates[i])[k] : 0.0;
+    for (std::size_t i = 0; i < 3; ++i) s.rate(i) = rates[i] ? (*rates[i])[k] : 0.0;
     s.rate_from = rates[0] || rates[1] || rates[2] ? Origin::kMeasured : Origin::kAbsent;
     if (placed) s.position = {(*places[0])[k], (*places[1])[k]};
     s.position_from = placed ? Origin::kMeasured : Origin::kAbsent;
@@ -199,11 +199,10 @@ Recording to_recording(const std::vector<MotionSample>& samples) {
   };
   constexpr std::array kForces = {"accel_x", "accel_y", "accel_z"}, kRates = {"gyro_x", "gyro_y", "gyro_z"};
   for (std::size_t i = 0; i < 3; ++i) {
-    const auto axis = static_cast<Eigen::Index>(i);
     if (samples.front().force_from != Origin::kAbsent)
-      add(kForces[i], "m/s^2", [&](const MotionSample& s) { return s.force(axis); });
+      add(kForces[i], "m/s^2", [&](const MotionSample& s) { return s.force(i); });
     if (samples.front().rate_from != Origin::kAbsent)
-      add(kRates[i], "rad/s", [&](const MotionSample& s) { return s.rate(axis); });
+      add(kRates[i], "rad/s", [&](const MotionSample& s) { return s.rate(i); });
   }
   if (samples.front().attitude_from != Origin::kAbsent) {
     const auto euler = [](const MotionSample& s) { return numerics::euler_from_quaternion(s.attitude); };

@@ -229,7 +229,7 @@ std::vector<std::size_t> spikes_in(std::span<const double> x, double least) {
   for (std::size_t i = 1; i + 1 < x.size(); ++i) {
     if (!(deviation[i] > limit) || std::abs(x[i + 1] - x[i - 1]) > 0.5 * deviation[i]) continue;
     // Vibration comes and goes: what samples do before or after counts too.
-    const auto here = deviation.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto here = deviation.begin() + i;
     const auto before = std::min<std::ptrdiff_t>(kAround, here - deviation.begin());
     const auto after = std::min<std::ptrdiff_t>(kAround, deviation.end() - here);
     const double nearby = std::max(numerics::median({here - before, here}), numerics::median({here, here + after}));
@@ -252,7 +252,7 @@ std::optional<Flaw> has_spikes(const Sampled& sampled, std::span<const TimeSpan>
     std::vector<double> x(value + first, value + last);
     // A heading that passes +-180 deg does not jump.
     if (sampled.channel->unit.si_name() == "rad") numerics::unwrap_angles(x);
-    for (const std::size_t i : spikes_in(x, least)) at.push_back(times[static_cast<std::size_t>(first) + i]);
+    for (const std::size_t i : spikes_in(x, least)) at.push_back(times[first + i]);
   }
   const double share = static_cast<double>(at.size()) / static_cast<double>(sampled.samples);
   if (at.size() < kFewestSpikes || share < kSpikeShare) return std::nullopt;

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/index.hpp"
 
 namespace veridyn::recording {
 namespace {
@@ -41,7 +40,7 @@ Element worst_element(const SensorMatrix& m) {
   return worst;
 }
 
-const std::string& axis(const SensorNames& names, Eigen::Index i) { return names.axes[at(i)]; }
+const std::string& axis(const SensorNames& names, Eigen::Index i) { return names.axes[i]; }
 
 /// The axis whose truth this reading follows.
 Eigen::Index followed(const SensorMatrix& m, Eigen::Index i) {

@@ -98,9 +98,9 @@ std::optional<GainRows> rows_of(const ComparedSignals& signals, const numerics::
   rows.others.resize(n, signed_index(others.size()) + (signals.with_bias ? 1 : 0));
   rows.others.setOnes();
   for (Eigen::Index i = 0; i < n; ++i) {
-    rows.reading(i) = reading[index[at(i)]];
-    rows.truth(i) = truth[index[at(i)]];
-    for (std::size_t j = 0; j < others.size(); ++j) rows.others(i, signed_index(j)) = others[j][index[at(i)]];
+    rows.reading(i) = reading[index[i]];
+    rows.truth(i) = truth[index[i]];
+    for (std::size_t j = 0; j < others.size(); ++j) rows.others(i, j) = others[j][index[i]];
   }
   return rows;
 }

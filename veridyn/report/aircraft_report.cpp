@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/report/figures/aircraft_figures.hpp"
 #include "veridyn/report/figures/curves.hpp"
 #include "veridyn/report/parts/aircraft_estimates.hpp"
@@ -99,7 +98,7 @@ Section method_section(const FlightStudy& study, const FlightAnalysis& analysis)
   for (const FlightSignal which : {FlightSignal::kAlpha, FlightSignal::kBeta, FlightSignal::kP, FlightSignal::kAz}) {
     const GridSignal& signal = s[which];
     const bool angle = which != FlightSignal::kAz;
-    facts.push_back({fmt::format("{} regressed on", kFlightSignalNames[static_cast<std::size_t>(which)]),
+    facts.push_back({fmt::format("{} regressed on", kFlightSignalNames[which]),
                      fmt::format("{}, error {:.3g} {}", signal.origin, angle ? signal.sigma / kDegree : signal.sigma,
                                  which == FlightSignal::kP ? "deg/s" : (angle ? "deg" : "m/s^2"))});
   }

@@ -33,10 +33,9 @@ std::string side_by_side(const Reproduction& r) {
     std::string values;
     for (std::size_t i = 0; i < r.batch->rows.names.size(); ++i) {
       const double published = published_value(r, s.method, r.batch->rows.names[i]);
-      const auto k = static_cast<Eigen::Index>(i);
       if (!std::isfinite(published)) continue;
       values += fmt::format("{}{} {:.4g} +- {:.1g} (published {:.4g}, true {:.4g})", values.empty() ? "" : ", ",
-                            r.batch->rows.names[i], s.mean(k), s.sd(k), published, r.batch->rows.truth(k));
+                            r.batch->rows.names[i], s.mean(i), s.sd(i), published, r.batch->rows.truth(i));
     }
     if (!values.empty()) text += fmt::format(" {}: {}.", estimation::to_string(s.method), values);
   }
@@ -62,15 +61,14 @@ Table batch_table(const Reproduction& r) {
     table.columns.push_back({.name = "covered", .unit = "%", .group = method});
   }
   for (std::size_t i = 0; i < e.rows.names.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
     Row row;
-    row.cells = {text_cell(e.rows.names[i]), number_cell(e.rows.truth(k))};
+    row.cells = {text_cell(e.rows.names[i]), number_cell(e.rows.truth(i))};
     for (const BatchStatistics& s : e.methods) {
       row.cells.push_back(number_cell(published_value(r, s.method, e.rows.names[i])));
-      row.cells.push_back(measured_cell(s.mean(k), s.sd(k)));
-      row.cells.push_back(number_cell(s.sd(k)));
-      row.cells.push_back(number_cell(s.bias(k, e.rows.truth), 2));
-      row.cells.push_back(number_cell(100.0 * s.coverage(k), 1));
+      row.cells.push_back(measured_cell(s.mean(i), s.sd(i)));
+      row.cells.push_back(number_cell(s.sd(i)));
+      row.cells.push_back(number_cell(s.bias(i, e.rows.truth), 2));
+      row.cells.push_back(number_cell(100.0 * s.coverage(i), 1));
     }
     table.rows.push_back(std::move(row));
   }
@@ -159,14 +157,13 @@ TimeSeries tracking_figure(const Reproduction& r) {
   figure.samples = first.time;
   for (std::size_t i = 0; i < e.rows.names.size(); ++i) {
     Panel panel{.label = e.rows.names[i], .unit = "1"};
-    const auto k = static_cast<Eigen::Index>(i);
     panel.lines.push_back(
-        {.name = "truth", .y = column(e.rows.truth_at, k), .x = e.rows.time, .role = Role::kReference});
+        {.name = "truth", .y = column(e.rows.truth_at, i), .x = e.rows.time, .role = Role::kReference});
     for (std::size_t m = 0; m < e.trackers.size(); ++m) {
       const TrackHistory& h = e.runs[m][0].history;
       Line line{.name = e.trackers[m].name, .y = h.value[i]};
       // Wild values before there are data would hide everything else.
-      const double scale = e.rows.truth_at.col(k).cwiseAbs().maxCoeff();
+      const double scale = e.rows.truth_at.col(i).cwiseAbs().maxCoeff();
       const double bound = scale > 0.0 ? 4.0 * scale : 1.0;
       Band band;
       for (std::size_t t = 0; t < line.y.size(); ++t) {

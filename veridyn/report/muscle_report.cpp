@@ -36,7 +36,7 @@ std::string force_unit(const Coordinate& c) { return c.unit() == "m" ? "N" : "N 
 
 std::vector<double> column(const estimation::RowMatrix& matrix, std::size_t index, double scale = 1.0) {
   std::vector<double> values(static_cast<std::size_t>(matrix.rows()));
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) values[at(i)] = scale * matrix(i, static_cast<Eigen::Index>(index));
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) values[i] = scale * matrix(i, index);
   return values;
 }
 
@@ -57,11 +57,11 @@ Shown choose(const MuscleStudy& study, const MuscleResult& result) {
   const MuscleTrajectory& t = result.trajectory;
   std::vector<double> force(shown.model.muscles.size());
   for (std::size_t m = 0; m < force.size() && t.tendon_force.rows() > 0; ++m)
-    force[m] = t.tendon_force.col(static_cast<Eigen::Index>(m)).maxCoeff();
+    force[m] = t.tendon_force.col(m).maxCoeff();
   shown.muscles = largest(force, kMostLines);
   std::vector<double> travel(shown.model.coordinates.size());
   for (std::size_t c = 0; c < travel.size(); ++c) {
-    const auto q = t.q.col(static_cast<Eigen::Index>(c));
+    const auto q = t.q.col(c);
     travel[c] = q.maxCoeff() - q.minCoeff();
   }
   shown.coordinates = largest(travel, kMostLines);
@@ -122,7 +122,7 @@ std::vector<Fact> facts(const Shown& shown) {
   if (study.motion.external) {
     std::vector<std::string> loads;
     for (const ExternalLoad& load : study.motion.external->loads)
-      loads.push_back(fmt::format("{} on {}", load.name, shown.model.bodies[at(load.body)].name));
+      loads.push_back(fmt::format("{} on {}", load.name, shown.model.bodies[load.body].name));
     list.push_back({"External loads", list_text(loads)});
   }
   const MuscleTrajectory& t = shown.result.trajectory;
@@ -162,9 +162,8 @@ Verdict verdict(const Shown& shown) {
   }
   for (const std::size_t c : shown.coordinates) {
     const Coordinate& k = shown.model.coordinates[c];
-    const auto i = static_cast<Eigen::Index>(c);
-    std::string line = fmt::format("{} goes from {:.3g} to {:.3g} {}", k.name, unit_of(k) * t.q(0, i),
-                                   unit_of(k) * t.q(t.q.rows() - 1, i), unit_name(k));
+    std::string line = fmt::format("{} goes from {:.3g} to {:.3g} {}", k.name, unit_of(k) * t.q(0, c),
+                                   unit_of(k) * t.q(t.q.rows() - 1, c), unit_name(k));
     if (shown.study.method == MuscleMethod::kComputedMuscleControl) {
       line += fmt::format(", at most {:.2g} {} from the desired motion", unit_of(k) * result.tracking_error(c),
                           unit_name(k));
@@ -198,7 +197,7 @@ Verdict verdict(const Shown& shown) {
     v.lines.push_back(fmt::format(
         "With the external loads {} lacks {:.3g} N ({:.2g} % of the weight), without them {:.3g} N (root mean "
         "squares).",
-        shown.model.coordinates[at(fit->coordinate)].name, fit->with, 100.0 * fit->with / fit->weight, fit->without));
+        shown.model.coordinates[fit->coordinate].name, fit->with, 100.0 * fit->with / fit->weight, fit->without));
   if (!t.events.empty())
     v.lines.push_back(
         fmt::format("{} times a tendon went slack or a fibre reached its least length.", t.events.size()));
@@ -242,7 +241,7 @@ TimeSeries force_figure(const Shown& shown) {
     const Coordinate& k = shown.model.coordinates[c];
     Panel panel{.label = k.name, .unit = force_unit(k), .lines = {}, .height = 120};
     if (required) panel.lines.push_back({.name = "required", .y = column(shown.result.generalized_force, c)});
-    const bool acts = reserve && !t.reserve.col(static_cast<Eigen::Index>(c)).isZero(0.0);
+    const bool acts = reserve && !t.reserve.col(c).isZero(0.0);
     if (acts) panel.lines.push_back({.name = "reserve", .y = column(t.reserve, c)});
     if (!panel.lines.empty()) figure.panels.push_back(std::move(panel));
   }
@@ -262,7 +261,7 @@ TimeSeries reaction_figure(const Shown& shown) {
   }
   Panel panel{.label = "force", .unit = "N", .lines = {}, .height = 170};
   for (const std::size_t k : largest(peak, kMostLines))
-    panel.lines.push_back({.name = shown.model.joints[at(reactions.joints[k])].name, .y = force[k]});
+    panel.lines.push_back({.name = shown.model.joints[reactions.joints[k]].name, .y = force[k]});
   figure.panels.push_back(std::move(panel));
   return figure;
 }
@@ -285,7 +284,7 @@ Table reaction_table_of(const Shown& shown) {
       force = std::max(force, reactions.force.row(i).segment(3 * signed_index(k), 3).norm());
       moment = std::max(moment, reactions.moment.row(i).segment(3 * signed_index(k), 3).norm());
     }
-    table.rows.push_back({.cells = {text_cell(shown.model.joints[at(reactions.joints[k])].name), number_cell(force),
+    table.rows.push_back({.cells = {text_cell(shown.model.joints[reactions.joints[k]].name), number_cell(force),
                                     number_cell(weight > 0.0 ? 100.0 * force / weight : 0.0), number_cell(moment)}});
   }
   return table;
@@ -349,7 +348,6 @@ Table muscle_table_of(const Shown& shown) {
     table.columns.push_back({.name = "greatest", .unit = "L0", .digits = 3, .group = "fibre length"});
   }
   for (std::size_t m = 0; m < shown.model.muscles.size(); ++m) {
-    const auto i = static_cast<Eigen::Index>(m);
     const MuscleParameters& p = shown.model.muscles[m].parameters;
     const MusculotendonParameters<double>& k = p.musculotendon;
     Row row{.cells = {text_cell(p.name),
@@ -357,15 +355,15 @@ Table muscle_table_of(const Shown& shown) {
                       number_cell(k.max_isometric_force), number_cell(k.optimal_fiber_length),
                       number_cell(k.tendon_slack_length), number_cell(k.pennation_angle_at_optimal / kDegree)}};
     if (forces) {
-      const double peak = t.tendon_force.col(i).maxCoeff();
+      const double peak = t.tendon_force.col(m).maxCoeff();
       for (const double value :
-           {peak, 100.0 * peak / k.max_isometric_force, t.activation.col(i).mean(), t.activation.col(i).maxCoeff()}) {
+           {peak, 100.0 * peak / k.max_isometric_force, t.activation.col(m).mean(), t.activation.col(m).maxCoeff()}) {
         row.cells.push_back(number_cell(value));
       }
     }
     if (fibers) {
-      row.cells.push_back(number_cell(t.fiber_length.col(i).minCoeff() / k.optimal_fiber_length));
-      row.cells.push_back(number_cell(t.fiber_length.col(i).maxCoeff() / k.optimal_fiber_length));
+      row.cells.push_back(number_cell(t.fiber_length.col(m).minCoeff() / k.optimal_fiber_length));
+      row.cells.push_back(number_cell(t.fiber_length.col(m).maxCoeff() / k.optimal_fiber_length));
     }
     if (std::any_of(shown.study.changes.begin(), shown.study.changes.end(),
                     [&](const ParameterChange& c) { return c.muscle == p.name; }))
@@ -393,7 +391,7 @@ Table event_table(const Shown& shown) {
   if (events.size() > kMostEvents) table.caption = fmt::format("The first {} of {}.", kMostEvents, events.size());
   for (std::size_t i = 0; i < std::min(events.size(), kMostEvents); ++i) {
     table.rows.push_back(
-        {.cells = {number_cell(events[i].time), text_cell(shown.model.muscles[at(events[i].muscle)].name()),
+        {.cells = {number_cell(events[i].time), text_cell(shown.model.muscles[events[i].muscle].name()),
                    text_cell(event_text(events[i].kind))}});
   }
   return table;

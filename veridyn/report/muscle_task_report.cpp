@@ -40,7 +40,7 @@ std::vector<Fact> task_facts(const TaskStudy& study, const MuscleAnalysis& a) {
     for (std::size_t j = 0; j < a.outputs.size() && j < at(a.moment_noise.size()); ++j)
       list.push_back(
           {fmt::format("Noise of {}", a.outputs[j].name),
-           fmt::format("{:.3g} {}{}", a.moment_noise(signed_index(j)), a.outputs[j].unit,
+           fmt::format("{:.3g} {}{}", a.moment_noise(j), a.outputs[j].unit,
                        study.outputs[j].noise_sd > 0.0 ? " (stated)" : " (found together with the EMG's error)")});
     if (!a.emg_share.empty())
       list.push_back(
@@ -89,7 +89,7 @@ Section muscle_parameters(const TaskStudy& study, const MuscleAnalysis& a) {
     for (Cell& cell : interval_cells(p.value, p.sigma, p.low95, p.high95)) row.cells.push_back(std::move(cell));
     if (truth) row.cells.insert(row.cells.begin() + 4, measured_cell(a.true_value(p.name), p.sigma));
     row.cells.push_back(text_cell(p.unit == "1" ? "" : p.unit));
-    row.cells.push_back(number_cell(i < a.result.verdicts.size() ? 100.0 * a.result.learned(signed_index(i)) : kNaN));
+    row.cells.push_back(number_cell(i < a.result.verdicts.size() ? 100.0 * a.result.learned(i) : kNaN));
     row.status = status_of(p.status);
     table.rows.push_back(std::move(row));
   }
@@ -198,7 +198,7 @@ Table task_table(const MuscleAnalysis& a) {
 
 std::vector<double> output_column(const estimation::RowMatrix& values, std::size_t output, double unit) {
   std::vector<double> column;
-  for (Eigen::Index k = 0; k < values.rows(); ++k) column.push_back(unit * values(k, signed_index(output)));
+  for (Eigen::Index k = 0; k < values.rows(); ++k) column.push_back(unit * values(k, output));
   return column;
 }
 

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/sensitivity/sensitivity_tables.hpp"
 #include "veridyn/report/parts/index_blocks.hpp"
 #include "veridyn/report/parts/remarks.hpp"
@@ -64,7 +63,7 @@ Matrix heat_map(const SensitivityStudy& study, const MuscleSensitivity& s) {
     map.row_names.push_back((in_set(s.cover.chosen, t) ? "chosen: " : "") + s.tasks[t].name);
     std::vector<double> row;
     for (std::size_t m = 0; m < s.muscles.size(); ++m) {
-      row.push_back(100.0 * s.sampling.mean(signed_index(m), signed_index(t)));
+      row.push_back(100.0 * s.sampling.mean(m, t));
       if (std::isfinite(row.back())) map.high = std::max(map.high, row.back());
     }
     map.values.push_back(std::move(row));

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/batches/fingerprint.hpp"
 #include "veridyn/vehicle/model/changed_vehicle.hpp"
 
@@ -58,7 +57,7 @@ std::vector<std::string> default_inputs(VehicleModelKind model, const VehiclePar
 VehicleParameters<double> parameters_at(VehicleParameters<double> p, std::span<const IndexInput> inputs,
                                         const Eigen::VectorXd& point) {
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const double value = point(signed_index(i));
+    const double value = point(i);
     if (inputs[i].name == kCgPosition) {
       const double wheelbase = p.wheelbase();
       p.a = value;

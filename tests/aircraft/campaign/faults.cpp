@@ -54,7 +54,7 @@ Change turned(Names names, const Eigen::Vector3d& rotation) {
     std::array<Channel, 3> c{recording.at(names[0]), recording.at(names[1]), recording.at(names[2])};
     for (std::size_t i = 0; i < c[0].size(); ++i) {
       const Eigen::Vector3d v = R * Eigen::Vector3d(c[0].value[i], c[1].value[i], c[2].value[i]);
-      for (std::size_t k = 0; k < 3; ++k) c[k].value[i] = v(static_cast<Eigen::Index>(k));
+      for (std::size_t k = 0; k < 3; ++k) c[k].value[i] = v(k);
     }
     for (Channel& channel : c) recording.set(std::move(channel));
   };
@@ -68,7 +68,7 @@ void without_gravity(FlightStudy& study) {
   for (std::size_t i = 0; i < std::min(a[0].size(), roll.size()); ++i) {
     const Eigen::Vector3d g =
         numerics::R_body_from_ned(roll.value[i], pitch.value[i], yaw.value[i]) * Eigen::Vector3d(0.0, 0.0, kGravity);
-    for (std::size_t k = 0; k < 3; ++k) a[k].value[i] += g(static_cast<Eigen::Index>(k));
+    for (std::size_t k = 0; k < 3; ++k) a[k].value[i] += g(k);
   }
   for (Channel& channel : a) recording.set(std::move(channel));
 }

@@ -123,7 +123,7 @@ TEST(MissingSensorsCampaignSoak, IntervalsHoldTheTruthWhereTheyAreStated) {
 
 const Tally& of_step(const std::vector<Tally>& sums, const std::string& name) {
   const std::vector<Stripped> all = steps();
-  return sums[static_cast<std::size_t>(std::ranges::find(all, name, &Stripped::name) - all.begin())];
+  return sums[std::ranges::find(all, name, &Stripped::name) - all.begin()];
 }
 
 // In light turbulence. Motion over ground, heading and attitude cost nothing of what pitot tube and vanes show; without

@@ -45,7 +45,7 @@ TEST(AirDataEvidence, LeavesLittleInDoubtInCalmAirAndMoreInTurbulence) {
   const std::vector<FlightEvidence> calm = evidence_with("alpha", 1.0, "none");
   const std::vector<FlightEvidence> rough = evidence_with("alpha", 1.0, "low_moderate");
   for (const FlightSignal signal : {FlightSignal::kAirspeed, FlightSignal::kAlpha, FlightSignal::kBeta}) {
-    EXPECT_LT(doubt_about(calm, signal), 0.05) << kFlightSignalNames[static_cast<std::size_t>(signal)];
+    EXPECT_LT(doubt_about(calm, signal), 0.05) << kFlightSignalNames[signal];
     EXPECT_GT(doubt_about(rough, signal), doubt_about(calm, signal));
   }
 }

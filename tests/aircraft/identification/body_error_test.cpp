@@ -74,7 +74,7 @@ TEST(BodyError, IsSharedByTheCoefficientsOfAnEstimate) {
     r->chosen->theta = Eigen::VectorXd::Ones(1);
     r->chosen->covariance = Eigen::MatrixXd::Ones(1, 1);
     r->chosen->parameters.resize(1);
-    r->body_sensitivity = Eigen::MatrixXd::Zero(1, static_cast<Eigen::Index>(kBodyConstants));
+    r->body_sensitivity = Eigen::MatrixXd::Zero(1, kBodyConstants);
   }
   a.name = "Cl";
   b.name = "Cn";

@@ -63,7 +63,7 @@ TEST(CoefficientUncertainty, TakesRangesAndCorrelationFromTheFlight) {
   EXPECT_LT(std::abs(inputs.correlation(at(F::kAlpha), at(F::kP))), 0.1);
   EXPECT_EQ(inputs.low(at(F::kThrust)), 5.0);
   EXPECT_EQ(inputs.high(at(F::kThrust)), 5.0);
-  EXPECT_EQ(inputs.low(static_cast<Eigen::Index>(kFlightSignals + 1)), subject.mass);
+  EXPECT_EQ(inputs.low(kFlightSignals + 1), subject.mass);
 }
 
 TEST(CoefficientUncertainty, AgreesWithTheLinearLawWhereErrorsAreSmallAndSplitsItIntoItsSources) {

@@ -89,7 +89,7 @@ TEST(CoefficientRow, HasTheJacobianOfCentralDifferences) {
     const Eigen::VectorXd slope =
         (coefficient_row(model, high, subject, 1.2).row - coefficient_row(model, low, subject, 1.2).row) / (2.0 * h);
     for (Eigen::Index j = 0; j < slope.size(); ++j) {
-      EXPECT_NEAR(row.jacobian(j, static_cast<Eigen::Index>(i)), slope(j), 1e-7 * std::max(1.0, std::abs(slope(j))))
+      EXPECT_NEAR(row.jacobian(j, i), slope(j), 1e-7 * std::max(1.0, std::abs(slope(j))))
           << kFlightSignalNames[i] << " row " << j;
     }
   }

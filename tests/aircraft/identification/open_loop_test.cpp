@@ -104,7 +104,7 @@ TEST(OpenLoop, FliesAndScoresAsTheExportedJsbsimFileDoes) {
       if (ours.group != window.group) continue;
       ASSERT_EQ(ours.predicted.size(), theirs.size() + 1) << "and the gap behind the window";
       double largest = 0.0;
-      for (const auto& y : theirs) largest = std::max(largest, std::abs(y(signed_index(i))));
+      for (const auto& y : theirs) largest = std::max(largest, std::abs(y(i)));
       std::vector<double> measured, predicted;
       const double factor = ours.unit == "m/s" ? 1.0 : 1.0 / kDegree;
       for (std::size_t k = 0; k < theirs.size(); ++k) {
@@ -156,7 +156,7 @@ TEST(OpenLoop, BandsHoldTheErrorsOfTheParametersAndWhatTheInitialStateMakesUpFor
   }
   const auto n = signed_index(values.size());
   estimate.covariance = Eigen::MatrixXd::Zero(n, n);
-  for (Eigen::Index i = 0; i < n; ++i) estimate.covariance(i, i) = std::pow(0.06 * values[at(i)], 2.0);
+  for (Eigen::Index i = 0; i < n; ++i) estimate.covariance(i, i) = std::pow(0.06 * values[i], 2.0);
   numerics::RandomStream random(4, "models");
   double inside = 0.0, without = 0.0;
   constexpr int kDraws = 6, kCompared = 2;
@@ -186,7 +186,7 @@ TEST(OpenLoop, OfAWrongCoefficientLeavesItsBandsSoonAndTheRowFails) {
     CoefficientModel& model = wrong.model.at(name);
     const auto names = model.parameter_names();
     const auto at = std::ranges::find(names, parameter_name(name, parse_term(term, "test"))) - names.begin();
-    model.values[static_cast<std::size_t>(at)] *= 1.3;
+    model.values[at] *= 1.3;
     const OpenLoop open = fly(flight, wrong, options);
     EXPECT_LT(state_of(open, state).horizon_s, 4.0) << state << " is held for 8 s by the true model";
     EXPECT_LT(state_of(open, state).held, state_of(open, state).windows) << state;

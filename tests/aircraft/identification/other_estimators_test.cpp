@@ -54,7 +54,7 @@ TEST(OtherEstimators, InCalmAirOutputErrorHoldsTheTruthAndIsSharperThanRegressio
     const auto names = truth.parameter_names();
     const auto at = std::find(names.begin(), names.end(), p.estimate.parameter.name);
     ASSERT_NE(at, names.end());
-    const double value = truth.values[static_cast<std::size_t>(at - names.begin())];
+    const double value = truth.values[at - names.begin()];
     ++count;
     held += p.estimate.parameter.low95 < value && value < p.estimate.parameter.high95;
     far += std::abs(p.estimate.parameter.value - value) > 4.0 * p.estimate.parameter.sigma;

@@ -38,7 +38,7 @@ TEST(OutputErrorModel, MovesAsTheBodyAxesDynamicsDo) {
   for (const auto& c : subject.model.coefficients) models.push_back(*c);
   const OutputErrorModel model(signals, std::vector<TimeSpan>{{0.0, 2.1}}, subject, models, false);
   ASSERT_EQ(model.outputs().size(), 11u);
-  Eigen::VectorXd theta_all(static_cast<Eigen::Index>(model.parameters().size() + 8));
+  Eigen::VectorXd theta_all(model.parameters().size() + 8);
   Eigen::Index at = 0;
   for (const auto& parameter : model.parameters()) theta_all(at++) = parameter.start;
   for (const auto& initial : model.initial_conditions(0)) theta_all(at++) = initial.start;

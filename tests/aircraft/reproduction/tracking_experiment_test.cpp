@@ -27,7 +27,7 @@ TEST(TrackingExperiment, SettlesWhereItIsExcitedAndNeverWhereItIsBiased) {
     const TrackHistory& h = e.runs[tracker][0].history;
     double worst = 0.0;
     for (std::size_t i = 1; i < h.value.size(); ++i)
-      worst = std::max(worst, std::abs(h.value[i].back() / e.rows.truth(static_cast<Eigen::Index>(i)) - 1.0));
+      worst = std::max(worst, std::abs(h.value[i].back() / e.rows.truth(i) - 1.0));
     return worst;
   };
   EXPECT_GT(error(0), 0.1);

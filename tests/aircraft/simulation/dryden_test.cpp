@@ -107,8 +107,8 @@ std::array<std::vector<double>, 3> periodogram(const DrydenSettings& settings, d
   std::vector<double> hann(kLength);
   double energy = 0.0;
   for (int i = 0; i < kLength; ++i) {
-    hann[static_cast<std::size_t>(i)] = 0.5 * (1.0 - std::cos(2.0 * M_PI * (i + 0.5) / kLength));
-    energy += hann[static_cast<std::size_t>(i)] * hann[static_cast<std::size_t>(i)];
+    hann[i] = 0.5 * (1.0 - std::cos(2.0 * M_PI * (i + 0.5) / kLength));
+    energy += hann[i] * hann[i];
   }
   std::array<std::vector<double>, 3> x;
   for (auto& v : x) v.resize(kLength);

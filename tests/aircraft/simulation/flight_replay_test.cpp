@@ -39,7 +39,7 @@ double largest_error(const SimulatedFlight& flight, double seconds) {
     const std::vector<double> all = replay.flown(i);
     const Eigen::VectorXd flown =
         Eigen::Map<const Eigen::VectorXd>(all.data() + begin, static_cast<Eigen::Index>(end - begin));
-    const Eigen::VectorXd error = signals.row(static_cast<Eigen::Index>(i)).transpose() - flown;
+    const Eigen::VectorXd error = signals.row(i).transpose() - flown;
     most = std::max(most, error.norm() / (flown.array() - flown.mean()).matrix().norm());
   }
   return most;

@@ -104,7 +104,7 @@ inline std::vector<CarAttitude> attitudes_on(const WavyCircuit& circuit, int ste
     roll_rate += h * (omega * omega * (0.5 * kDegree * left - roll) - 2.0 * zeta * omega * roll_rate);
     pitch += h * pitch_rate;
     roll += h * roll_rate;
-    attitude[static_cast<std::size_t>(k)] = {first + turns, now.pitch + pitch, now.roll + roll};
+    attitude[k] = {first + turns, now.pitch + pitch, now.roll + roll};
   }
   return attitude;
 }

@@ -33,7 +33,7 @@ Moments moments_of(const GreyImage& image, double background) {
     m.light = 0.0;
     for (int y = 0; y < image.height; ++y) {
       for (int x = 0; x < image.width; ++x) {
-        const double light = image.pixels[static_cast<std::size_t>(y * image.width + x)] - background;
+        const double light = image.pixels[y * image.width + x] - background;
         const Eigen::Vector2d p(x, y);
         sum += light * (pass == 0 ? p : Eigen::Vector2d((p - m.middle).cwiseAbs2()));
         m.light += light;

@@ -53,7 +53,7 @@ TEST(BlobFinder, SaysWhichSpotsAreDisturbed) {
   GreyImage image{.width = 100, .height = 60, .pixels = std::vector<std::uint8_t>(6000, 20)};
   const auto put = [&](int x, int y, int size) {
     for (int i = 0; i < size; ++i)
-      for (int k = 0; k < size; ++k) image.pixels[static_cast<std::size_t>((y + k) * 100 + x + i)] = 200;
+      for (int k = 0; k < size; ++k) image.pixels[(y + k) * 100 + x + i] = 200;
   };
   put(20, 20, 4);
   put(26, 20, 4);  // its light is in the window of the one before
@@ -77,8 +77,8 @@ TEST(BlobFinder, JoinsPixelsThatTouchAtCorners) {
   GreyImage image{.width = 64, .height = 64, .pixels = std::vector<std::uint8_t>(4096, 10)};
   // A "V": its arms are one spot although they meet in the last row only.
   for (int i = 0; i < 6; ++i) {
-    image.pixels[static_cast<std::size_t>((20 + i) * 64 + 20 + i)] = 200;
-    image.pixels[static_cast<std::size_t>((20 + i) * 64 + 30 - i)] = 200;
+    image.pixels[(20 + i) * 64 + 20 + i] = 200;
+    image.pixels[(20 + i) * 64 + 30 - i] = 200;
   }
   BlobFinder finder;
   EXPECT_EQ(finder.find(image.view()).size(), 1U);

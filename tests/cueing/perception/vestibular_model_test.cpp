@@ -122,9 +122,8 @@ TEST_F(CueingReference, OrmsbysImpulses) {
   const VestibularModel& m = vestibular_model("ormsby");
   const nlohmann::json& ormsby = reference_["ormsby"];
   for (int i = 0; i < 10; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    const double force = ormsby["impulse_oto_t0..9s_without_feedthrough"][at].get<double>();
-    const double rate = ormsby["impulse_scc_t0..9ms_without_feedthrough"][at].get<double>();
+    const double force = ormsby["impulse_oto_t0..9s_without_feedthrough"][i].get<double>();
+    const double rate = ormsby["impulse_scc_t0..9ms_without_feedthrough"][i].get<double>();
     EXPECT_NEAR(impulse_response(m.otoliths, i), force, 1e-7) << i;
     EXPECT_NEAR(impulse_response(m.canals[0], 1e-3 * i) / rate, 1.0, 1e-7) << i;
   }

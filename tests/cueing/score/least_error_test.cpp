@@ -50,7 +50,7 @@ TEST(LeastError, NoAlgorithmIsBetterAndAPlatformThatStandsIsAsItSays) {
       for (const WashoutAlgorithm& a : washout_algorithms()) {
         Progress progress;
         const auto run = drive_platform(drive, *a.design()->make(platform), platform, progress);
-        best = std::min(best, score_of(run, platform).pairs[static_cast<std::size_t>(pair)].value);
+        best = std::min(best, score_of(run, platform).pairs[pair].value);
       }
       EXPECT_GT(best, least->error) << name;
       EXPECT_LT(best, 1.2 * least->still) << name;
@@ -83,7 +83,7 @@ TEST(LeastError, ItsMotionDoesWhatItStates) {
       run.steps.emplace_back();
     }
     const CueingScore s = score_of(run, platform);
-    EXPECT_NEAR(s.pairs[static_cast<std::size_t>(pair)].value, least->error, 0.02 * least->still);
+    EXPECT_NEAR(s.pairs[pair].value, least->error, 0.02 * least->still);
   }
 }
 

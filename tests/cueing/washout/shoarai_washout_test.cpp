@@ -22,9 +22,8 @@ TEST(ShoaraiWashout, TakesTheProgramsOwnGoldenSteps) {
   for (const auto& expected : golden) {
     const auto& pose = washout.step(1e-3 * Eigen::Vector3d(1.0, 2.0, 3.0), Eigen::Vector3d(4.0, 5.0, 6.0));
     for (Eigen::Index i = 0; i < 3; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      EXPECT_NEAR(1e3 * pose.shift(i), expected[k].get<double>(), 1e-9);  // there in mm
-      EXPECT_NEAR(pose.angle(i), expected[k + 3].get<double>(), 1e-9);
+      EXPECT_NEAR(1e3 * pose.shift(i), expected[i].get<double>(), 1e-9);  // there in mm
+      EXPECT_NEAR(pose.angle(i), expected[i + 3].get<double>(), 1e-9);
     }
   }
 }

@@ -16,7 +16,7 @@ namespace {
 class Decay : public AutodiffModel<Decay, 8, OpenLoopModel> {
  public:
   Decay(std::vector<double> measured, double a, double limit = kInfinity, double prior = kInfinity)
-      : measured_(std::move(measured)), limit_(limit), samples_(static_cast<Eigen::Index>(measured_.size())) {
+      : measured_(std::move(measured)), limit_(limit), samples_(measured_.size()) {
     parameters_ = {{.name = "a", .unit = "1/s", .start = a, .fixed = true}};
     initial_ = {{.name = "x_0", .unit = "m/s", .start = 1.0, .prior_sigma = prior}};
   }
@@ -28,7 +28,7 @@ class Decay : public AutodiffModel<Decay, 8, OpenLoopModel> {
   [[nodiscard]] std::size_t forecast_outputs() const override { return 1; }
   [[nodiscard]] std::vector<RowMatrix> measured() const override {
     RowMatrix m(samples_, 1);
-    for (Eigen::Index k = 0; k < samples_; ++k) m(k, 0) = measured_[static_cast<std::size_t>(k)];
+    for (Eigen::Index k = 0; k < samples_; ++k) m(k, 0) = measured_[k];
     return {m};
   }
   [[nodiscard]] TimeSpan segment_span(std::size_t) const override {

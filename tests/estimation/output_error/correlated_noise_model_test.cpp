@@ -79,11 +79,11 @@ TEST(CorrelatedNoiseModel, GivesTheEstimateAndErrorBarOfGeneralisedLeastSquares)
   Eigen::MatrixXd R(m, m), S(m, count);
   Eigen::VectorXd z(m);
   for (Eigen::Index a = 0; a < m; ++a) {
-    const Eigen::Index k = there[static_cast<std::size_t>(a)];
+    const Eigen::Index k = there[a];
     z(a) = measured(k, 0);
     for (Eigen::Index i = 0; i < count; ++i) S(a, i) = model.wave(k, i);
     for (Eigen::Index b = 0; b < m; ++b)
-      R(a, b) = sigma * sigma * std::pow(phi, std::abs(static_cast<double>(k - there[static_cast<std::size_t>(b)])));
+      R(a, b) = sigma * sigma * std::pow(phi, std::abs(static_cast<double>(k - there[b])));
   }
   const numerics::Cholesky root(R);
   const Eigen::MatrixXd P =

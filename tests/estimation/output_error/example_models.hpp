@@ -80,7 +80,7 @@ class Static : public AutodiffModel<Static, 4> {
       for (Index k = 0; k < y.rows(); ++k) {
         Scalar sum(0.0);
         for (Index i = 0; i < X_[s][j].cols(); ++i) sum += Scalar(X_[s][j](k, i)) * theta(i);
-        y(k, static_cast<Index>(j)) = sum;
+        y(k, j) = sum;
       }
     }
     return true;

@@ -50,7 +50,7 @@ TEST(OutputError, IsOrdinaryLeastSquaresOnAStaticModel) {
   EXPECT_EQ(oe.lag_window, ols.lag_window);
   for (Index i = 0; i < 3; ++i) {
     // The search stops at a relative change of the cost of 1e-10, some 1e-4 sigma at worst.
-    EXPECT_NEAR(oe.theta(i), ols.theta(i), 1e-5 * ols.parameters[static_cast<std::size_t>(i)].sigma);
+    EXPECT_NEAR(oe.theta(i), ols.theta(i), 1e-5 * ols.parameters[i].sigma);
     for (Index j = 0; j < 3; ++j) {
       const double scale = std::sqrt(ols.covariance(i, i) * ols.covariance(j, j));
       EXPECT_NEAR(oe.covariance_white(i, j), ols.covariance_white(i, j), 1e-8 * scale);
@@ -103,10 +103,10 @@ TEST(OutputError, UnknownsOfASegmentAreEliminatedAsTheirColumnsWouldBe) {
   ASSERT_TRUE(oe.usable()) << oe.message;
   ASSERT_GT(oe.lag_window, 0);
   for (Index i = 0; i < 2; ++i) {
-    const Parameter& p = ols.parameters[static_cast<std::size_t>(i)];
+    const Parameter& p = ols.parameters[i];
     EXPECT_NEAR(oe.theta(i), ols.theta(i), 1e-5 * p.sigma);
-    EXPECT_NEAR(oe.parameters[static_cast<std::size_t>(i)].sigma, p.sigma, 1e-6 * p.sigma);
-    EXPECT_NEAR(oe.parameters[static_cast<std::size_t>(i)].sigma_white, p.sigma_white, 1e-6 * p.sigma);
+    EXPECT_NEAR(oe.parameters[i].sigma, p.sigma, 1e-6 * p.sigma);
+    EXPECT_NEAR(oe.parameters[i].sigma_white, p.sigma_white, 1e-6 * p.sigma);
   }
   EXPECT_NEAR(oe.segment_parameters[1].value, ols.theta(3), 1e-4);
 }

@@ -38,8 +38,7 @@ TEST(RecursiveRegression, CoversTheTruthAndPredictsItsInnovation) {
     }
     const RegressionEstimate e = recursive.estimate();
     for (Eigen::Index i = 0; i < 3; ++i) {
-      held += truth(i) > e.parameters[static_cast<std::size_t>(i)].low95 &&
-              truth(i) < e.parameters[static_cast<std::size_t>(i)].high95;
+      held += truth(i) > e.parameters[i].low95 && truth(i) < e.parameters[i].high95;
       white_held += std::abs(truth(i) - e.theta(i)) < 1.96 * std::sqrt(e.covariance_white(i, i));
       ++all;
     }
@@ -63,7 +62,7 @@ TEST(RecursiveRegression, CoversTheTruthWhenTheResidualIsColoured) {
     feed(recursive, d);
     const RegressionEstimate e = recursive.estimate();
     for (Eigen::Index i = 0; i < 3; ++i) {
-      const Parameter& p = e.parameters[static_cast<std::size_t>(i)];
+      const Parameter& p = e.parameters[i];
       held += truth(i) > p.low95 && truth(i) < p.high95;
       white_held += std::abs(truth(i) - p.value) < 1.96 * p.sigma_white;
       ++all;

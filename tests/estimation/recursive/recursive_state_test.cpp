@@ -60,8 +60,7 @@ TEST_P(RecursiveRegressionOfAnyMethod, IsTheBatchEstimateOfTheSameRowsWhenNothin
   if (GetParam().method != Method::kOls) {
     EXPECT_NEAR(recursive.error_scale(), batch.error_scale, kLastDigits * batch.error_scale);
     for (std::size_t j = 0; j < batch.singular_values.size(); ++j) {
-      EXPECT_NEAR(recursive.singular_values()(static_cast<Eigen::Index>(j)), batch.singular_values[j],
-                  kLastDigits * batch.singular_values[j]);
+      EXPECT_NEAR(recursive.singular_values()(j), batch.singular_values[j], kLastDigits * batch.singular_values[j]);
     }
   }
 }

@@ -76,17 +76,16 @@ TEST(RecursiveTotalLeastSquares, BasesAreOrthogonalInTheDataAndOfUnitErrors) {
   std::array<double, kMaxRecursiveColumns> along{}, along_exact{};
   s.tracked.coordinates(row.data(), along.data(), along_exact.data());
   const Eigen::VectorXd expected = B.transpose() * Eigen::Map<const Eigen::VectorXd>(row.data(), kStreamColumns);
-  for (int j = 0; j < 3; ++j) EXPECT_NEAR(along[static_cast<std::size_t>(j)], expected(j), 1e-11);
-  for (int i = 0; i < 2; ++i) EXPECT_NEAR(along_exact[static_cast<std::size_t>(i)], expected(3 + i), 1e-11);
+  for (int j = 0; j < 3; ++j) EXPECT_NEAR(along[j], expected(j), 1e-11);
+  for (int i = 0; i < 2; ++i) EXPECT_NEAR(along_exact[i], expected(3 + i), 1e-11);
 }
 
 TEST(RecursiveTotalLeastSquares, RowsOfErrorsAloneRaiseAllSingularValuesAlike) {
   Stream s = random_stream();
   std::array<double, 3> before{};
-  for (int j = 0; j < 3; ++j) before[static_cast<std::size_t>(j)] = s.tracked.singular_value(j);
+  for (int j = 0; j < 3; ++j) before[j] = s.tracked.singular_value(j);
   s.tracked.append_errors(40.0);
-  for (int j = 0; j < 3; ++j)
-    EXPECT_NEAR(s.tracked.singular_value(j), std::hypot(before[static_cast<std::size_t>(j)], std::sqrt(40.0)), 1e-10);
+  for (int j = 0; j < 3; ++j) EXPECT_NEAR(s.tracked.singular_value(j), std::hypot(before[j], std::sqrt(40.0)), 1e-10);
   SmallMatrix A;
   s.tracked.square_root(A);
   EXPECT_LT((A.transpose() * A - s.square - 40.0 * stream_errors()).norm(), 1e-11 * s.square.norm());

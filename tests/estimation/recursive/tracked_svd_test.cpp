@@ -25,8 +25,7 @@ TEST(TrackedSvd, IsTheDecompositionByEigenOfRandomTriangles) {
       Eigen::MatrixXd R = Eigen::MatrixXd::Zero(m, m);
       std::array<double, 100> table{};
       for (int i = 0; i < m; ++i) {
-        for (int j = i; j < m; ++j)
-          table[static_cast<std::size_t>(10 * i + j)] = R(i, j) = normal(generator) * std::pow(grading, i);
+        for (int j = i; j < m; ++j) table[10 * i + j] = R(i, j) = normal(generator) * std::pow(grading, i);
       }
       TrackedSvd tracked(m);
       tracked.update(table.data(), 10);
@@ -101,7 +100,7 @@ void soak(Kind kind, std::uint64_t updates, double lambda) {
           value = k < 100 ? normal(generator) : 0.0;
           break;
       }
-      row[static_cast<std::size_t>(j)] = value;
+      row[j] = value;
     }
     ASSERT_TRUE(data.append(row.data(), lambda)) << k;
     if (k % 97 == 0 || k + 200 > updates) {

@@ -40,7 +40,7 @@ TEST(BlockBootstrap, AgreesWithTheAnalyticCovarianceForWhiteResiduals) {
   // residual power is not the sample's.
   const RegressionEstimate ols = estimate(data, Method::kOls, {.covariance = CovarianceKind::kWhite});
   for (Index j = 0; j < 3; ++j) {
-    const double sigma = ols.parameters[static_cast<std::size_t>(j)].sigma;
+    const double sigma = ols.parameters[j].sigma;
     EXPECT_NEAR(b.sigma(j) / sigma, 1.0, 0.12) << j;
     EXPECT_NEAR(b.high95(j) - b.low95(j), 2.0 * 1.96 * sigma, 0.15 * 2.0 * 1.96 * sigma);
     EXPECT_NEAR(b.mean(j), ols.theta(j), 0.2 * sigma);
@@ -111,7 +111,7 @@ TEST(BlockBootstrap, MovesBlocksInsideTheirSegmentsOnly) {
     const PointEstimator look = [&](const RegressionData& drawn) -> std::optional<Eigen::VectorXd> {
       EXPECT_EQ(drawn.rows(), 90);
       for (Index k = 1; k < 90; ++k) {
-        if (drawn.segment[static_cast<std::size_t>(k)] != drawn.segment[static_cast<std::size_t>(k) - 1]) continue;
+        if (drawn.segment[k] != drawn.segment[k - 1]) continue;
         const double before = drawn.regressand(k - 1), now = drawn.regressand(k);
         EXPECT_EQ(before < 30.0, now < 30.0);
         if (now != before + 1.0) {
@@ -135,8 +135,8 @@ TEST(BlockBootstrap, WorksOnGtlsToo) {
   const RegressionEstimate gtls = estimate(simulated.data, Method::kGtls, {.covariance = CovarianceKind::kWhite});
   ASSERT_TRUE(b.usable());
   for (Index j = 1; j < 3; ++j) {
-    EXPECT_NEAR(b.sigma(j) / gtls.parameters[static_cast<std::size_t>(j)].sigma, 1.0, 0.2);
-    EXPECT_NEAR(b.mean(j), gtls.theta(j), gtls.parameters[static_cast<std::size_t>(j)].sigma);
+    EXPECT_NEAR(b.sigma(j) / gtls.parameters[j].sigma, 1.0, 0.2);
+    EXPECT_NEAR(b.mean(j), gtls.theta(j), gtls.parameters[j].sigma);
   }
 }
 

@@ -40,7 +40,7 @@ TEST(FiniteFourierTransform, IsExactForCubicPolynomialsAtAnyFrequency) {
     const Complex s(0.0, 2.0 * std::numbers::pi * f[i]);
     const Complex exact =
         moment(0, s, 3.0) - 2.0 * moment(1, s, 3.0) + 0.5 * moment(2, s, 3.0) + 0.3 * moment(3, s, 3.0);
-    EXPECT_LT(std::abs(X(static_cast<Index>(i)) - exact), 2e-11) << f[i];
+    EXPECT_LT(std::abs(X(i) - exact), 2e-11) << f[i];
   }
 }
 
@@ -109,7 +109,7 @@ TEST(FrequencyEquationError, IsExactWithoutNoiseWhateverBiasAndDrift) {
   for (Index k = 0; k < data.rows(); ++k) {
     // Each segment its own bias and drift, in z and in a regressor.
     const double t = 0.02 * static_cast<double>(k);
-    const int s = data.segment[static_cast<std::size_t>(k)];
+    const int s = data.segment[k];
     data.regressand(k) += 3.0 * s - 0.2 * (s + 1) * t;
     data.regressors(k, 1) += 0.5 - 0.1 * t * s;
   }

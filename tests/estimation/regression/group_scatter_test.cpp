@@ -18,10 +18,9 @@ RegressionEstimate estimate_of(const std::vector<double>& values, const std::vec
   e.covariance = Eigen::MatrixXd::Zero(n, n);
   e.degrees_of_freedom = 100.0;
   for (Eigen::Index j = 0; j < n; ++j) {
-    const auto i = static_cast<std::size_t>(j);
-    e.theta(j) = values[i];
-    e.covariance(j, j) = sigmas[i] * sigmas[i];
-    e.parameters.push_back({.name = "p" + std::to_string(i), .value = values[i], .sigma = sigmas[i]});
+    e.theta(j) = values[j];
+    e.covariance(j, j) = sigmas[j] * sigmas[j];
+    e.parameters.push_back({.name = "p" + std::to_string(j), .value = values[j], .sigma = sigmas[j]});
   }
   return e;
 }

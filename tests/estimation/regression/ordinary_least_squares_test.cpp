@@ -38,7 +38,7 @@ TEST(OrdinaryLeastSquares, ReproducesTheCertifiedValuesOfLongley) {
   for (int i = 0; i < 7; ++i) {
     // Condition number 5e9 (unscaled) times rounding leaves 7 digits to any backward-stable method; scaling gives more.
     EXPECT_NEAR(e.theta(i) / certified[i], 1.0, 1e-8) << i;
-    EXPECT_NEAR(e.parameters[static_cast<std::size_t>(i)].sigma / certified_sd[i], 1.0, 1e-8) << i;
+    EXPECT_NEAR(e.parameters[i].sigma / certified_sd[i], 1.0, 1e-8) << i;
   }
   EXPECT_NEAR(e.residual_sd, 304.854073561965, 1e-6);
   EXPECT_NEAR(e.r_squared, 0.995479004577296, 1e-12);
@@ -81,7 +81,7 @@ TEST(OrdinaryLeastSquares, IntervalsCoverUnderColouredResiduals) {
                                        {.rows = 3000, .regressor_rho = 0.95, .error_rho = 0.9});
     const RegressionEstimate e = estimate(s.data, Method::kOls);
     for (Eigen::Index i = 0; i < 4; ++i) {
-      const Parameter& p = e.parameters[static_cast<std::size_t>(i)];
+      const Parameter& p = e.parameters[i];
       covered += p.low95 < theta(i) && theta(i) < p.high95 ? 1.0 : 0.0;
       covered_white += std::abs(p.value - theta(i)) < 1.96 * p.sigma_white ? 1.0 : 0.0;
       ratio += p.sigma / p.sigma_white;

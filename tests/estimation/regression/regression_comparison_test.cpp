@@ -74,7 +74,7 @@ TEST(Compare, EstimatesEquationErrorWhenAsked) {
   ASSERT_TRUE(c.recommends) << c.reason;
   EXPECT_EQ(c.recommended, Method::kGtls);
   for (Eigen::Index i = 0; i < 4; ++i) {
-    const Parameter& p = c.best()->parameters[static_cast<std::size_t>(i)];
+    const Parameter& p = c.best()->parameters[i];
     EXPECT_NEAR(p.value, regression_theta()(i), 3.5 * p.sigma);
   }
 }

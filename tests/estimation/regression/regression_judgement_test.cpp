@@ -46,8 +46,7 @@ TEST(RegressionJudgement, GradesAGoodTableYes) {
   EXPECT_EQ(result.estimate.judgement.prediction.grade, Grade::kYes);
   EXPECT_GT(row_of(result, "cross-validation").value, 0.5);
   for (std::size_t i = 0; i < 4; ++i)
-    EXPECT_NEAR(result.estimate.parameters[i].value, kTruth(static_cast<Eigen::Index>(i)),
-                4.0 * result.estimate.parameters[i].sigma);
+    EXPECT_NEAR(result.estimate.parameters[i].value, kTruth(i), 4.0 * result.estimate.parameters[i].sigma);
 }
 
 /// Share of intervals that hold the truth.
@@ -57,7 +56,7 @@ double coverage(const SimulationSettings& settings, unsigned sets) {
     const JudgedRegression result = judged(made_rows(seed, settings));
     for (std::size_t i = 0; i < 4; ++i) {
       const Parameter& p = result.estimate.parameters[i];
-      const double truth = kTruth(static_cast<Eigen::Index>(i));
+      const double truth = kTruth(i);
       held += p.low95 <= truth && truth <= p.high95 ? 1.0 : 0.0;
       all += 1.0;
     }

@@ -73,7 +73,7 @@ TEST(PublishedTables, OlsWithExactRegressorsIsUnbiasedAndCovers) {
       const Lateral s = lateral(static_cast<unsigned>(m + 1), c.theta, c.snr, 0.0, 400);
       const RegressionEstimate e = estimate(s.data, Method::kOls, {.covariance = CovarianceKind::kWhite});
       for (Eigen::Index i = 0; i < 6; ++i) {
-        const Parameter& p = e.parameters[static_cast<std::size_t>(i)];
+        const Parameter& p = e.parameters[i];
         mean_error(i) += (p.value - c.theta(i)) / runs;
         sigma(i) += p.sigma / runs;
         covered += p.low95 < c.theta(i) && c.theta(i) < p.high95 ? 1.0 : 0.0;
@@ -106,7 +106,7 @@ TEST(PublishedTables, NoiseOnRegressorsBiasesOlsAndNotGtls) {
     mean_ols += ols.theta / runs;
     mean_gtls += gtls.theta / runs;
     for (Eigen::Index i = 0; i < 6; ++i) {
-      const Parameter& p = gtls.parameters[static_cast<std::size_t>(i)];
+      const Parameter& p = gtls.parameters[i];
       covered += p.low95 < theta(i) && theta(i) < p.high95 ? 1.0 : 0.0;
     }
   }

@@ -93,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, StructureSearchOf,
 TEST(StructureSearch, PressIsTheSumOfErrorsOfLeavingEachRowOut) {
   RegressionData data = candidates(5, 0.4, 0.0, 60);
   const StructureSearch search = search_structure(data);
-  const StructureStep& last = search.history[static_cast<std::size_t>(search.estimate.parameters.size()) - 1];
+  const StructureStep& last = search.history[search.estimate.parameters.size() - 1];
   ASSERT_EQ(last.terms, static_cast<Index>(search.selected.size()));
   const RegressionData chosen = select_columns(data, search.selected);
   double press = 0.0;

@@ -73,8 +73,7 @@ TEST(GeneralisedTotalLeastSquares, EqualsTheDirectSvdOfTheWhitenedMatrix) {
   const Eigen::VectorXd h = numerics::product(C_inverse, svd.V.col(4));
   const RegressionEstimate e = estimate(s.data, Method::kGtls);
   EXPECT_LT((e.theta - h.head(4) / -h(4)).norm(), 1e-12);
-  for (std::size_t i = 0; i < 5; ++i)
-    EXPECT_NEAR(e.singular_values[i], svd.values(static_cast<Eigen::Index>(i)), 1e-10);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(e.singular_values[i], svd.values(i), 1e-10);
 }
 
 // An exact constant takes the means away: mixed OLS-TLS on the columns without their means.
@@ -114,9 +113,8 @@ TEST(GeneralisedTotalLeastSquares, DoesNotChangeWithTheUnitsOfColumns) {
   scaled.error_covariance = unit.asDiagonal() * s.data.error_covariance * unit.asDiagonal();
   const RegressionEstimate before = estimate(s.data, Method::kGtls), after = estimate(scaled, Method::kGtls);
   for (Eigen::Index i = 0; i < 4; ++i) {
-    const auto j = static_cast<std::size_t>(i);
     EXPECT_NEAR(after.theta(i) * unit(i) / unit(4), before.theta(i), 1e-11);
-    EXPECT_NEAR(after.parameters[j].t / before.parameters[j].t, 1.0, 1e-9);
+    EXPECT_NEAR(after.parameters[i].t / before.parameters[i].t, 1.0, 1e-9);
   }
   EXPECT_NEAR(after.singular_values[0] / before.singular_values[0], 1.0, 1e-12);
 }
@@ -138,7 +136,7 @@ TEST(GeneralisedTotalLeastSquares, AcceptsFullyCorrelatedErrors) {
   EXPECT_EQ(nearly.singular_values.size(), 4U);
   EXPECT_LT((singular.theta - nearly.theta).norm(), 1e-5);
   for (Eigen::Index i = 0; i < 4; ++i)
-    EXPECT_NEAR(singular.theta(i), true_parameters()(i), 4.0 * singular.parameters[static_cast<std::size_t>(i)].sigma);
+    EXPECT_NEAR(singular.theta(i), true_parameters()(i), 4.0 * singular.parameters[i].sigma);
 }
 
 TEST(TotalLeastSquares, ReportsTheNongenericCase) {
@@ -201,7 +199,7 @@ TEST_P(TlsCoverage, IntervalsHoldWhatTheyPromise) {
       const RegressionEstimate e = estimate(s.data, Method::kGtls);
       ASSERT_TRUE(e.usable());
       for (Eigen::Index i = 0; i < 4; ++i) {
-        const Parameter& p = e.parameters[static_cast<std::size_t>(i)];
+        const Parameter& p = e.parameters[i];
         covered += p.low95 < theta(i) && theta(i) < p.high95 ? 1.0 : 0.0;
         deviation += std::pow((p.value - theta(i)) / p.sigma, 2);
       }
@@ -239,7 +237,7 @@ double coverage_of_gtls(const testing_support::SimulationSettings& settings, dou
     spoil(s);
     const RegressionEstimate e = estimate(s.data, Method::kGtls);
     for (Eigen::Index i = 0; i < 4; ++i) {
-      const Parameter& p = e.parameters[static_cast<std::size_t>(i)];
+      const Parameter& p = e.parameters[i];
       covered += p.low95 < theta(i) && theta(i) < p.high95 ? 1.0 : 0.0;
     }
   }

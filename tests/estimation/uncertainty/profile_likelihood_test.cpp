@@ -146,7 +146,7 @@ TEST(ProfileLikelihood, IsWiderByTheInflationOfEachParameter) {
       profile_likelihood(model, measured, e, {0, 1}, {.output_error = o, .inflation = {4.0, 1.0}}, progress);
   ASSERT_TRUE(r.usable()) << r.message;
   for (const std::size_t i : {0u, 1u}) {
-    const double sigma = std::sqrt(e.covariance_white(static_cast<Index>(i), static_cast<Index>(i)));
+    const double sigma = std::sqrt(e.covariance_white(i, i));
     EXPECT_NEAR(r.profiles[i].high - r.profiles[i].low, 2.0 * 1.959963984540054 * sigma * (i == 0 ? 2.0 : 1.0),
                 1e-6 * sigma);
   }

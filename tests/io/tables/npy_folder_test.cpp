@@ -7,7 +7,6 @@
 #include "tests/io/support.hpp"
 #include "tests/io/tables/npy_bytes.hpp"
 #include "tests/support/folders.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/io/read.hpp"
 #include "veridyn/io/tables/npy.hpp"
 
@@ -89,7 +88,7 @@ TEST(RealNpy, ADriveOfOthersIsRead) {
       v += std::pow(recording.at("global_pose.frame_velocities" + std::string(axis)).value[i], 2);
     const auto times = speed.times();
     const auto next = std::lower_bound(times.begin(), times.end(), vx.times()[i]) - times.begin();
-    squares += std::pow(std::sqrt(v) - speed.value[at(next)], 2);
+    squares += std::pow(std::sqrt(v) - speed.value[next], 2);
   }
   EXPECT_LT(std::sqrt(squares / 24.0), 0.3);
 }

@@ -16,8 +16,8 @@ TEST(PlatformJson, HoldsLegsAndRider) {
   ASSERT_EQ(json["heads"].size(), 6U);
   for (std::size_t k = 0; k < 6; ++k) {
     for (int i = 0; i < 3; ++i) {
-      EXPECT_EQ(json["feet"][k][static_cast<std::size_t>(i)], hexapod.legs->feet[k](i));
-      EXPECT_EQ(json["heads"][k][static_cast<std::size_t>(i)], hexapod.legs->heads[k](i));
+      EXPECT_EQ(json["feet"][k][i], hexapod.legs->feet[k](i));
+      EXPECT_EQ(json["heads"][k][i], hexapod.legs->heads[k](i));
     }
   }
   EXPECT_EQ(json["leg"]["lowest"], hexapod.legs->leg.lowest);

@@ -75,7 +75,7 @@ TEST(OrderFormat, StrokesOfSixLegsLieInTwentyBytes) {
   b = format.encode(up);
   const cueing::Legs legs(*platform.legs, platform.limits);
   for (std::size_t k = 0; k < 6; ++k) {
-    const double length = legs.lengths(up.motion).position(static_cast<Eigen::Index>(k));
+    const double length = legs.lengths(up.motion).position(k);
     EXPECT_GT(length, 0.0);
     EXPECT_NEAR(stroke(k), neutral + 65535.0 * length / (leg.highest - leg.lowest), 0.51) << k;
   }

@@ -120,8 +120,7 @@ class CarLinksInMemory final : public LiveLinks {
     const std::size_t size = driver_->read(now, records);
     driver_gone_ = size == 0 && driver_->ended();
     if (size > 0 || driver_gone_)
-      bytes_.push_back(
-          {LinkOf::kDriver, std::string(records.begin(), records.begin() + static_cast<std::ptrdiff_t>(size))});
+      bytes_.push_back({LinkOf::kDriver, std::string(records.begin(), records.begin() + size)});
   }
 
   static constexpr Nanoseconds kItsZero = 1234 * kSecond;  // its clock is not ours

@@ -193,8 +193,8 @@ TEST(FrameDecoder, StartsInTheMiddleOfAStream) {
   for (std::size_t start = 1; start < line.size(); ++start) {
     FrameDecoder decoder;
     const std::vector<OwnFrame> frames = decoded(decoder, Bytes(line).subspan(start));
-    const auto complete = static_cast<std::size_t>(
-        std::count(line.begin() + static_cast<std::ptrdiff_t>(start), line.end(), 0) - (line[start - 1] != 0 ? 1 : 0));
+    const auto complete =
+        static_cast<std::size_t>(std::count(line.begin() + start, line.end(), 0) - (line[start - 1] != 0 ? 1 : 0));
     EXPECT_EQ(frames.size(), complete) << start;
   }
 }

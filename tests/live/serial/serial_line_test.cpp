@@ -27,7 +27,7 @@ TEST(SerialLine, PassesEveryByteAsItIs) {
   while (received.size() < all.size() && line.wait(kSecond)) {
     std::array<std::uint8_t, 100> chunk;
     const std::size_t count = line.read(chunk);
-    received.insert(received.end(), chunk.begin(), chunk.begin() + static_cast<std::ptrdiff_t>(count));
+    received.insert(received.end(), chunk.begin(), chunk.begin() + count);
   }
   EXPECT_EQ(received, all);
   EXPECT_FALSE(line.hung_up());

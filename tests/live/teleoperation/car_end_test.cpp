@@ -202,7 +202,7 @@ TEST(CarEnd, NeverExecutesDuplicatesAndLateCommands) {
   driver.receive(Bytes(frame).first(car.report({}, now, frame)), now);
   const auto command = [&](double force) {
     const std::size_t size = driver.command({.drive_force = force}, now, frame);
-    return CommandFrame(frame.begin(), frame.begin() + static_cast<std::ptrdiff_t>(size));
+    return CommandFrame(frame.begin(), frame.begin() + size);
   };
   const auto force_after = [&](const CommandFrame& bytes) {
     now += kMillisecond;

@@ -65,13 +65,13 @@ TEST(CarReport, WhatNoSensorDeliversIsNaNAndNothingElseIs) {
                    &sensors.wheel_speeds[2], &sensors.wheel_speeds[3], &sensors.battery};
       };
       list(report.sensors);
-      *numbers[static_cast<std::size_t>(which)] = bad;
+      *numbers[which] = bad;
       EXPECT_NE(what_is_wrong(report.sensors), "");
       encode_report(report, bytes);
       ReportPayload decoded = decode_report(bytes).value();
       EXPECT_EQ(what_is_wrong(decoded.sensors), what_is_wrong(report.sensors));
       list(decoded.sensors);
-      for (int k = 0; k < 12; ++k) EXPECT_EQ(std::isnan(*numbers[static_cast<std::size_t>(k)]), k == which);
+      for (int k = 0; k < 12; ++k) EXPECT_EQ(std::isnan(*numbers[k]), k == which);
     }
   }
 }

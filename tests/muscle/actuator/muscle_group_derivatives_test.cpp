@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "tests/muscle/actuator/muscle_variants.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/simulation/system_linearization.hpp"
 
 namespace veridyn::muscle {
@@ -75,8 +74,8 @@ TEST(MuscleGroupDerivatives, CarryTheValuesAndTheSlopesOfDifferences) {
         SCOPED_TRACE(m.muscles[k].name + ", output " + std::to_string(o) + " by input " + std::to_string(i));
         EXPECT_NEAR(out[o][k].a, value[o][k], 1e-9 * (1.0 + std::abs(value[o][k])));
         const double expected = (4.0 * fine[o][k] - coarse[o][k]) / 3.0;
-        EXPECT_NEAR(out[o][k].v(signed_index(i)), expected, 1e-5 * (1.0 + std::abs(expected)));
-        EXPECT_EQ(flattened[o][k].v(signed_index(i)), out[o][k].v(signed_index(i)));
+        EXPECT_NEAR(out[o][k].v(i), expected, 1e-5 * (1.0 + std::abs(expected)));
+        EXPECT_EQ(flattened[o][k].v(i), out[o][k].v(i));
       }
     }
   }

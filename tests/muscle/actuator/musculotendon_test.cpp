@@ -50,7 +50,7 @@ TEST(Musculotendon, DerivativesOfTheRatesAreThoseOfCentralDifferences) {
       x[11] = 0.3 * uniform(generator);
       if (v.no_activation_dynamics) x[7] = std::clamp(x[7], 0.05, 0.95);
       std::array<Dual, 12> jets;
-      for (int i = 0; i < 12; ++i) jets[static_cast<std::size_t>(i)] = Dual(x[static_cast<std::size_t>(i)], i);
+      for (int i = 0; i < 12; ++i) jets[i] = Dual(x[i], i);
       const auto exact = rates_of(v, jets);
       const auto plain = rates_of(v, x);
       const std::array<double, 3> unit{100.0, 1.34, 800.0};
@@ -86,8 +86,7 @@ TEST(Musculotendon, DerivativesOfTheEquilibriumAreThoseOfCentralDifferences) {
     for (const double stretch : {0.83, 1.04, 1.21}) {
       const std::array<double, 6> x{798.52, 0.134, 0.143, 0.2, 0.37, 0.146 + 0.134 * stretch};
       std::array<ceres::Jet<double, 6>, 6> jets;
-      for (int i = 0; i < 6; ++i)
-        jets[static_cast<std::size_t>(i)] = ceres::Jet<double, 6>(x[static_cast<std::size_t>(i)], i);
+      for (int i = 0; i < 6; ++i) jets[i] = ceres::Jet<double, 6>(x[i], i);
       const auto exact = solve(jets);
       EXPECT_EQ(exact.end, EquilibriumEnd::kFound);
       EXPECT_NEAR(exact.fiber_length.a, solve(x).fiber_length, 1e-14);

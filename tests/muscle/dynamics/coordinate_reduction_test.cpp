@@ -137,7 +137,7 @@ TEST(ReducedDynamics, IsTheSolutionWithLagrangeMultipliers) {
     Eigen::MatrixXd A = Eigen::MatrixXd::Zero(constraints, n);
     Eigen::VectorXd b = Eigen::VectorXd::Zero(constraints);
     for (Eigen::Index i = 0; i < couplers; ++i) {
-      const CoordinateCoupler& c = tree.model.couplers[static_cast<std::size_t>(i)];
+      const CoordinateCoupler& c = tree.model.couplers[i];
       const numerics::FunctionValue<double> f = c.function.evaluate(q(c.independent));
       ASSERT_NEAR(q(c.dependent), f.value, 1e-15);
       A(i, c.dependent) = 1.0;
@@ -145,8 +145,8 @@ TEST(ReducedDynamics, IsTheSolutionWithLagrangeMultipliers) {
       b(i) = f.curvature * qdot(c.independent) * qdot(c.independent);
     }
     for (Eigen::Index i = 0; i < 2; ++i) {
-      A(couplers + i, reduction.driven()[static_cast<std::size_t>(i)]) = 1.0;
-      b(couplers + i) = driven[static_cast<std::size_t>(i)].acceleration;
+      A(couplers + i, reduction.driven()[i]) = 1.0;
+      b(couplers + i) = driven[i].acceleration;
     }
     Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n + constraints, n + constraints);
     K.topLeftCorner(n, n) = M;
@@ -308,8 +308,8 @@ TEST(ReducedDynamics, RunsEveryModelOfOpenSimThatWeHave) {
     const CoordinateReduction reduction(model);
     ReducedDynamics<double> reduced(mechanism, reduction);
     const Eigen::VectorXd pose = model.default_pose();
-    Eigen::VectorXd z(static_cast<Eigen::Index>(reduction.free().size()));
-    for (Eigen::Index i = 0; i < z.size(); ++i) z(i) = pose(reduction.free()[static_cast<std::size_t>(i)]);
+    Eigen::VectorXd z(reduction.free().size());
+    for (Eigen::Index i = 0; i < z.size(); ++i) z(i) = pose(reduction.free()[i]);
     Eigen::VectorXd zddot(z.size());
     const Eigen::VectorXd zero = Eigen::VectorXd::Zero(mechanism.coordinates());
     reduced.set_state(z.data(), zero.data(), reduction.default_motion().data());

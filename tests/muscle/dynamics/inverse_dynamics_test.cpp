@@ -99,9 +99,8 @@ TEST(InverseDynamics, OfAnElbowFlexionIsOpenSims) {
   }
   const CoordinateTable tau = inverse_dynamics(mechanism, q, qdot, qddot);
   for (Eigen::Index i = 0; i < rows; ++i) {
-    const auto row = static_cast<std::size_t>(i);
-    EXPECT_NEAR(tau(i, 0), table.number(row, "r_shoulder_elev_moment_Nm"), 1e-12);
-    EXPECT_NEAR(tau(i, 1), table.number(row, "r_elbow_flex_moment_Nm"), 1e-12);
+    EXPECT_NEAR(tau(i, 0), table.number(i, "r_shoulder_elev_moment_Nm"), 1e-12);
+    EXPECT_NEAR(tau(i, 1), table.number(i, "r_elbow_flex_moment_Nm"), 1e-12);
   }
 }
 

@@ -77,7 +77,7 @@ TEST(Mechanism, ColumnsAreTheDerivativesOfThePoses) {
         const Eigen::Vector3d point = body_pose(mechanism, k, b) * local;
         const Vector3<Jet> moving = body_pose(mechanism, derivative, b) * local;
         const bool moves = mechanism.moves(c, mechanism.body(b).link);
-        const Eigen::Vector3d expected = moves ? k.columns[at(c)].at(point) : Eigen::Vector3d::Zero();
+        const Eigen::Vector3d expected = moves ? k.columns[c].at(point) : Eigen::Vector3d::Zero();
         for (int i = 0; i < 3; ++i) {
           EXPECT_NEAR(moving(i).a, point(i), 1e-13);
           EXPECT_NEAR(moving(i).v[0], expected(i), 1e-13) << "coordinate " << c << " body " << b;
@@ -106,18 +106,18 @@ TEST(Mechanism, VelocitiesAndBiasAreTheTimeDerivativesOfThePoses) {
     update_velocities(mechanism, qdotj.data(), k);
     std::vector<SpatialVector<double>> acceleration(at(mechanism.links()));
     for (int i = 1; i < mechanism.links(); ++i) {
-      SpatialVector<double>& A = acceleration[at(i)];
-      A = acceleration[at(mechanism.link(i).parent)];
+      SpatialVector<double>& A = acceleration[i];
+      A = acceleration[mechanism.link(i).parent];
       for (int j = 0; j < 3; ++j) {
-        A.angular(j) += k.velocity_bias[at(i)].angular(j).a;
-        A.linear(j) += k.velocity_bias[at(i)].linear(j).a;
+        A.angular(j) += k.velocity_bias[i].angular(j).a;
+        A.linear(j) += k.velocity_bias[i].linear(j).a;
       }
-      const Vector3<Jet> point = k.pose[at(i)] * Eigen::Vector3d(0.2, 0.1, -0.3);
-      const Vector3<Jet> velocity = k.velocity[at(i)].at(point);
+      const Vector3<Jet> point = k.pose[i] * Eigen::Vector3d(0.2, 0.1, -0.3);
+      const Vector3<Jet> velocity = k.velocity[i].at(point);
       for (int j = 0; j < 3; ++j) {
         EXPECT_NEAR(velocity(j).a, point(j).v[0], 1e-12);
-        EXPECT_NEAR(k.velocity[at(i)].angular(j).v[0], A.angular(j), 1e-11);
-        EXPECT_NEAR(k.velocity[at(i)].linear(j).v[0], A.linear(j), 1e-11);
+        EXPECT_NEAR(k.velocity[i].angular(j).v[0], A.angular(j), 1e-11);
+        EXPECT_NEAR(k.velocity[i].linear(j).v[0], A.linear(j), 1e-11);
       }
     }
   }
@@ -140,7 +140,7 @@ TEST(Mechanism, WeldedBodiesBecomeOneLinkOfTheSameMassAndMoment) {
   Eigen::Matrix3d expected = Eigen::Matrix3d::Zero();
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
   for (int b = 1; b <= 2; ++b) {
-    const Body& body = model.bodies[at(b)];
+    const Body& body = model.bodies[b];
     const Placement& place = mechanism.body(b).in_link;
     expected +=
         about_origin(body.mass, place * body.mass_center, place.rotation * body.inertia * place.rotation.transpose());
@@ -231,8 +231,8 @@ TEST_P(OpenSimBodies, HaveOurPosesAndVelocities) {
     const int body = model.body(bodies.text(row, "body"));
     ASSERT_GE(body, 0);
     const Pose<double> pose = body_pose(mechanism, k, body);
-    const SpatialVector<double>& V = k.velocity[at(mechanism.body(body).link)];
-    const Eigen::Vector3d velocity = V.at(pose * model.bodies[at(body)].mass_center);
+    const SpatialVector<double>& V = k.velocity[mechanism.body(body).link];
+    const Eigen::Vector3d velocity = V.at(pose * model.bodies[body].mass_center);
     const char* const axes[] = {"x", "y", "z"};
     for (int i = 0; i < 3; ++i) {
       const std::string axis = axes[i];

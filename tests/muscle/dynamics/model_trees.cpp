@@ -35,8 +35,8 @@ Joint blank_joint(const Model& model, int parent, int child) {
   joint.parent = parent;
   joint.child = child;
   for (int i = 0; i < 3; ++i) {
-    joint.rotation[static_cast<std::size_t>(i)].axis = Eigen::Vector3d::Unit(i);
-    joint.translation[static_cast<std::size_t>(i)].axis = Eigen::Vector3d::Unit(i);
+    joint.rotation[i].axis = Eigen::Vector3d::Unit(i);
+    joint.translation[i].axis = Eigen::Vector3d::Unit(i);
   }
   return joint;
 }
@@ -125,11 +125,11 @@ Joint& add_joint(Model& model, TreeJoint kind, int parent, int child, numerics::
   };
   const auto rotation = [&](int i, const Eigen::Vector3d& axis) {
     const int c = new_coordinate(model, joint, CoordinateMotion::kRotational);
-    set_axis(joint.rotation[static_cast<std::size_t>(i)], axis, c, linear());
+    set_axis(joint.rotation[i], axis, c, linear());
   };
   const auto translation = [&](int i, const Eigen::Vector3d& axis) {
     const int c = new_coordinate(model, joint, CoordinateMotion::kTranslational);
-    set_axis(joint.translation[static_cast<std::size_t>(i)], axis, c, linear());
+    set_axis(joint.translation[i], axis, c, linear());
   };
   const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(), z = Eigen::Vector3d::UnitZ();
   switch (kind) {
@@ -253,7 +253,7 @@ Model gait_like() {
 }
 
 Eigen::VectorXd random_state(std::size_t size, double magnitude, numerics::RandomStream& random) {
-  Eigen::VectorXd v(static_cast<Eigen::Index>(size));
+  Eigen::VectorXd v(size);
   for (double& x : v) x = random.uniform(-magnitude, magnitude);
   return v;
 }

@@ -27,8 +27,8 @@ void compare(const Model& model, RandomStream& random) {
     for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
       const test::TreeDescription::Frame expected = theirs.body_pose(b);
       const Pose<double> pose = body_pose(mechanism, d.kinematics(), b);
-      const SpatialVector<double>& V = d.kinematics().velocity[static_cast<std::size_t>(mechanism.body(b).link)];
-      const Eigen::Vector3d center = pose * model.bodies[static_cast<std::size_t>(b)].mass_center;
+      const SpatialVector<double>& V = d.kinematics().velocity[mechanism.body(b).link];
+      const Eigen::Vector3d center = pose * model.bodies[b].mass_center;
       EXPECT_LT((pose.rotation - expected.rotation).norm(), 1e-12);
       EXPECT_LT((pose.position - expected.translation).norm(), 1e-12);
       EXPECT_LT((V.at(center) - theirs.mass_center_velocity(b)).norm(), 1e-11);

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
 #include "veridyn/muscle/osim/osim_reader.hpp"
 
@@ -20,7 +19,7 @@ TEST(Skeleton, SticksOfTheArmMeetInTheElbowAndEndBeyondTheMassCentre) {
   EXPECT_EQ(sticks[1].name, "forearm");
   EXPECT_NEAR((sticks[0].points.back() - sticks[1].points.front()).norm(), 0.0, 1e-14);
   const int forearm = model.body("forearm");
-  const Eigen::Vector3d center = body_pose(mechanism, kinematics, forearm) * model.bodies[at(forearm)].mass_center;
+  const Eigen::Vector3d center = body_pose(mechanism, kinematics, forearm) * model.bodies[forearm].mass_center;
   EXPECT_NEAR((0.5 * (sticks[1].points.front() + sticks[1].points.back()) - center).norm(), 0.0, 1e-14);
 }
 

@@ -69,7 +69,7 @@ TEST_P(EmgDrivenArm, DerivativesAreThoseOfCentralDifferences) {
     // Wide enough that what is left of the integration's error, over it, is none of the derivative. A rigid tendon's
     // fibre is not integrated, and a wide step would cross the corners of its curves.
     const double narrow = std::get<1>(GetParam()) ? 0.01 : 1.0;
-    const bool delay = arm.unknowns[static_cast<std::size_t>(j)].unit == "s";
+    const bool delay = arm.unknowns[j].unit == "s";
     const double h = narrow * (delay ? 1e-4 : 1e-3 * std::abs(theta(j)));
     Eigen::VectorXd up = theta, down = theta;
     up(j) += h;
@@ -93,8 +93,7 @@ TEST_P(EmgDrivenArm, DerivativesAreThoseOfCentralDifferences) {
       }
       EXPECT_LE(corners, exact.output.rows() / 5);
       // Next to the corner single samples are that far off.
-      EXPECT_LE(difference, 2e-2 * largest)
-          << kNames[static_cast<std::size_t>(j)] << ", output " << o << ", sample " << where;
+      EXPECT_LE(difference, 2e-2 * largest) << kNames[j] << ", output " << o << ", sample " << where;
     }
   }
 }

@@ -67,14 +67,13 @@ struct MovedArm {
   }
 
   [[nodiscard]] Eigen::VectorXd theta_of(const MuscleParametricModel& forward) const {
-    Eigen::VectorXd all(static_cast<Eigen::Index>(unknowns.size() + 4));
+    Eigen::VectorXd all(unknowns.size() + 4);
     for (std::size_t i = 0; i < unknowns.size(); ++i) {
       // Away from the model's own values, so that gains and delays count.
       const bool delay = unknowns[i].unit == "s" && unknowns[i].start == 0.0;
-      all(static_cast<Eigen::Index>(i)) = delay ? 0.03 : 1.05 * unknowns[i].start;
+      all(i) = delay ? 0.03 : 1.05 * unknowns[i].start;
     }
-    for (std::size_t i = 0; i < 4; ++i)
-      all(static_cast<Eigen::Index>(unknowns.size() + i)) = forward.initial_conditions(0)[i].start;
+    for (std::size_t i = 0; i < 4; ++i) all(unknowns.size() + i) = forward.initial_conditions(0)[i].start;
     return all;
   }
 
@@ -87,7 +86,7 @@ struct MovedArm {
       t.clear(), q.clear();
       for (std::size_t k = 0; k < time.size(); k += every) {
         t.push_back(time[k]);
-        q.push_back(recorded(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(c)));
+        q.push_back(recorded(k, c));
       }
       motion.coordinate[c] = numerics::PiecewisePolynomial::quintic_spline(t, q);
     }

@@ -7,7 +7,6 @@
 
 #include "tests/muscle/arm26_muscles.hpp"
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/index.hpp"
 
 namespace veridyn::muscle {
 namespace {
@@ -106,9 +105,8 @@ TEST_P(MuscleOnItsPath, HasTheSlopesOfDifferences) {
     EXPECT_GT(largest, 0.0) << j;
     // Thelen's velocity curve has a corner at rest, near which single samples are off.
     for (std::size_t k = 0; k < m.time.size(); ++k) {
-      EXPECT_NEAR(exact.force_by(signed_index(k), signed_index(j)), force_by[k], 5e-3 * largest)
-          << "column " << j << " at " << m.time[k];
-      EXPECT_NEAR(exact.fiber_by(signed_index(k), signed_index(j)), fiber_by[k], 5e-3 * largest_fiber + 1e-9)
+      EXPECT_NEAR(exact.force_by(k, j), force_by[k], 5e-3 * largest) << "column " << j << " at " << m.time[k];
+      EXPECT_NEAR(exact.fiber_by(k, j), fiber_by[k], 5e-3 * largest_fiber + 1e-9)
           << "column " << j << " at " << m.time[k];
     }
   }
@@ -134,7 +132,7 @@ TEST_P(MuscleOnItsPath, AnErrorOfTheSignalActsAroundItsInstantOnly) {
   ASSERT_TRUE(simulate_along_path(m.along(), columns, response)) << response.trouble;
   double largest = 0.0;
   for (std::size_t k = 0; k < m.time.size(); ++k) {
-    const double by = std::abs(response.force_by(signed_index(k), 0));
+    const double by = std::abs(response.force_by(k, 0));
     largest = std::max(largest, by);
     // The signal acts 34 ms later.
     if (m.time[k] < 0.25 - 0.05 + 0.034) {

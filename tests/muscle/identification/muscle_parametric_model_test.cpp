@@ -19,8 +19,8 @@ using test::segment_of;
 TEST(MuscleParametricModel, TheSharedOutputErrorEstimatorRecoversHiddenParameters) {
   // The subject: the built-in arm with a longer biceps tendon and a stronger brachialis, which two motions distinguish.
   Model subject = load_model("arm").model();
-  auto& biceps = subject.muscles[static_cast<std::size_t>(subject.muscle("biceps_long"))].parameters.musculotendon;
-  auto& brachialis = subject.muscles[static_cast<std::size_t>(subject.muscle("brachialis"))].parameters.musculotendon;
+  auto& biceps = subject.muscles[subject.muscle("biceps_long")].parameters.musculotendon;
+  auto& brachialis = subject.muscles[subject.muscle("brachialis")].parameters.musculotendon;
   biceps.tendon_slack_length *= 1.03;
   brachialis.max_isometric_force *= 1.15;
   const MusculoskeletalSystem subject_system(subject, {.paths = PathSource::kFitted});
@@ -57,7 +57,7 @@ TEST(MuscleParametricModel, TheSharedOutputErrorEstimatorRecoversHiddenParameter
     const double sigma = std::sqrt(estimate.covariance(i, i));
     EXPECT_LT(std::abs(estimate.theta(i) - hidden(i)), 4.0 * sigma);
     // The data distinguish the subject from the generic model.
-    EXPECT_GT(std::abs(model.parameters()[static_cast<std::size_t>(i)].start - hidden(i)), 10.0 * sigma);
+    EXPECT_GT(std::abs(model.parameters()[i].start - hidden(i)), 10.0 * sigma);
   }
 }
 
@@ -66,8 +66,7 @@ TEST(MuscleParametricModel, SegmentsWithTheirOwnLoadsAndLocksAreOneEstimate) {
   Model subject = load_model("arm").model();
   const std::vector<std::string> flexors{"biceps_long", "biceps_short", "brachialis"};
   for (const std::string& name : flexors)
-    subject.muscles[static_cast<std::size_t>(subject.muscle(name))].parameters.musculotendon.max_isometric_force *=
-        1.12;
+    subject.muscles[subject.muscle(name)].parameters.musculotendon.max_isometric_force *= 1.12;
   const MusculoskeletalSystem generic(load_model("arm").model(), {.paths = PathSource::kFitted});
   const MusculoskeletalSystem held(load_model("arm").model(),
                                    {.paths = PathSource::kFitted, .locked = {"shoulder_flexion"}});
@@ -145,8 +144,7 @@ TEST(MuscleParametricModel, OneTaskLeavesWhatItDoesNotDetermineWhereItWas) {
   const MotionSegment task = segment_of(system, 0.5, {0.05, 0.05, 0.05, 0.4, 0.2, 0.1}, 0.4);
   const MuscleParametricModel model(system, names, {task});
   Eigen::VectorXd theta(22);
-  for (Eigen::Index i = 0; i < 18; ++i)
-    theta(i) = (i % 2 == 0 ? 1.03 : 0.97) * model.parameters()[static_cast<std::size_t>(i)].start;
+  for (Eigen::Index i = 0; i < 18; ++i) theta(i) = (i % 2 == 0 ? 1.03 : 0.97) * model.parameters()[i].start;
   theta.tail(4) << 0.0, 0.5, 0.0, 0.0;
   estimation::ModelResponse person;
   ASSERT_TRUE(model.respond(0, theta, {}, person));
@@ -169,7 +167,7 @@ TEST(MuscleParametricModel, OneTaskLeavesWhatItDoesNotDetermineWhereItWas) {
     EXPECT_LT(e.outputs[1].fit.rmse, 2e-3);
     double largest = 0.0;
     for (Eigen::Index i = 0; i < 18; ++i)
-      largest = std::max(largest, std::abs(e.theta(i) / model.parameters()[static_cast<std::size_t>(i)].start - 1.0));
+      largest = std::max(largest, std::abs(e.theta(i) / model.parameters()[i].start - 1.0));
     return largest;
   };
   const double held = largest_move(true), wandering = largest_move(false);

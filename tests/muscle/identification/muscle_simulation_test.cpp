@@ -33,10 +33,9 @@ TEST_P(MuscleSensitivities, AreThoseOfCentralDifferences) {
   const MuscleParametricModel model(system, names, {segment}, 1e-9);
   // Differences divide what the integrator leaves by their step: theirs has to leave less.
   const MuscleParametricModel finer(system, names, {segment}, 1e-12);
-  Eigen::VectorXd theta(static_cast<Eigen::Index>(names.size() + 4));
-  for (std::size_t i = 0; i < names.size(); ++i) theta(static_cast<Eigen::Index>(i)) = model.parameters()[i].start;
-  for (std::size_t i = 0; i < 4; ++i)
-    theta(static_cast<Eigen::Index>(names.size() + i)) = model.initial_conditions(0)[i].start;
+  Eigen::VectorXd theta(names.size() + 4);
+  for (std::size_t i = 0; i < names.size(); ++i) theta(i) = model.parameters()[i].start;
+  for (std::size_t i = 0; i < 4; ++i) theta(names.size() + i) = model.initial_conditions(0)[i].start;
   std::vector<Eigen::Index> active(static_cast<std::size_t>(theta.size()));
   for (std::size_t i = 0; i < active.size(); ++i) active[i] = static_cast<Eigen::Index>(i);
   estimation::ModelResponse exact, plus, minus;
@@ -59,8 +58,7 @@ TEST_P(MuscleSensitivities, AreThoseOfCentralDifferences) {
     }
     EXPECT_GT(largest, 0.0);
     EXPECT_LT(difference, 1e-4 * largest)
-        << (j < static_cast<Eigen::Index>(names.size()) ? model.parameters()[static_cast<std::size_t>(j)].name
-                                                        : "start");
+        << (j < static_cast<Eigen::Index>(names.size()) ? model.parameters()[j].name : "start");
   }
 }
 
@@ -98,7 +96,7 @@ void expect_central_differences(const MuscleParametricModel& model, const Muscle
   const auto n = static_cast<Eigen::Index>(model.parameters().size());
   const auto initial = model.initial_conditions(0);
   Eigen::VectorXd theta(n + static_cast<Eigen::Index>(initial.size()));
-  for (Eigen::Index i = 0; i < n; ++i) theta(i) = model.parameters()[static_cast<std::size_t>(i)].start;
+  for (Eigen::Index i = 0; i < n; ++i) theta(i) = model.parameters()[i].start;
   for (std::size_t i = 0; i < initial.size(); ++i) theta(n + static_cast<Eigen::Index>(i)) = initial[i].start;
   std::vector<Eigen::Index> active;
   for (Eigen::Index i = 0; i < theta.size(); ++i) active.push_back(i);
@@ -127,8 +125,7 @@ void expect_central_differences(const MuscleParametricModel& model, const Muscle
       }
       // A term left out would be of the order of the derivative itself.
       EXPECT_LE(difference, tolerance * largest + 1e-9)
-          << model.outputs()[static_cast<std::size_t>(c)].name << " by "
-          << (j < n ? model.parameters()[static_cast<std::size_t>(j)].name : "start");
+          << model.outputs()[c].name << " by " << (j < n ? model.parameters()[j].name : "start");
     }
   }
 }

@@ -31,9 +31,8 @@ std::string unknown_error(const MuscleUnknownSpec& spec) {
 TEST(MuscleUnknown, OfOneParameterStartsAtTheModelsValue) {
   const MuscleUnknown u =
       unknown_of(unknowns_arm(), parse_parameter_name(unknowns_arm(), "brachialis.max_isometric_force", "x"));
-  const double value = unknowns_arm()
-                           .muscles[static_cast<std::size_t>(unknowns_arm().muscle("brachialis"))]
-                           .parameters.musculotendon.max_isometric_force;
+  const double value =
+      unknowns_arm().muscles[unknowns_arm().muscle("brachialis")].parameters.musculotendon.max_isometric_force;
   EXPECT_EQ(u.name, "brachialis.max_isometric_force");
   EXPECT_EQ(u.unit, "N");
   EXPECT_DOUBLE_EQ(u.start, value);

@@ -62,7 +62,7 @@ TEST(NormalisedFiberLengths, AreFoundForRigidTendonsToo) {
 TEST(NormalisedFiberLengths, ErrorIsWhatNoLengthsMakeUpFor) {
   Model other = load_model("arm").model();
   const int muscle = other.muscle("brachialis");
-  other.muscles[static_cast<std::size_t>(muscle)].points.back().location.x() += 0.012;
+  other.muscles[muscle].points.back().location.x() += 0.012;
   const MusculoskeletalSystem reference(load_model("arm").model()), subject(other);
   const std::vector<MatchedFiber> matched = match_fiber_lengths(reference, subject);
   for (const MatchedFiber& fiber : matched) {

@@ -33,8 +33,8 @@ TEST(TaskEstimate, IsTheNormalPosteriorOfALinearModel) {
   for (Eigen::Index i = 0; i < 4; ++i) {
     const double sigma = std::sqrt(expected.covariance(i, i));
     EXPECT_NEAR(e.best.theta(i), expected.mean(i), 1e-3 * sigma) << i;
-    EXPECT_NEAR(e.best.parameters[at(i)].sigma, sigma, 1e-3 * sigma) << i;
-    const double prior = model.parameters()[at(i)].prior_sigma;
+    EXPECT_NEAR(e.best.parameters[i].sigma, sigma, 1e-3 * sigma) << i;
+    const double prior = model.parameters()[i].prior_sigma;
     EXPECT_NEAR(e.learned(i), 1.0 - std::pow(sigma / prior, 2), 1e-3) << i;
   }
   EXPECT_NEAR(e.chi_square, 1.0, 0.3);
@@ -118,7 +118,7 @@ TEST(TaskEstimate, DescribesTheEndOfAnotherSearchWithoutMovingIt) {
   EXPECT_EQ(e.searches[0].message, "found by a swarm");
   const test::NormalPosterior expected = test::posterior_of(model, measured, kTaskNoise);
   for (Eigen::Index i = 0; i < 4; ++i)
-    EXPECT_NEAR(e.best.parameters[at(i)].sigma, std::sqrt(expected.covariance(i, i)), 1e-6) << "as wide as anywhere";
+    EXPECT_NEAR(e.best.parameters[i].sigma, std::sqrt(expected.covariance(i, i)), 1e-6) << "as wide as anywhere";
   EXPECT_EQ(e.verdicts[0], TaskVerdict::kIdentified);
 }
 

@@ -42,8 +42,8 @@ TEST(SampleTasks, AreOfTheNormalPosteriorOfALinearModel) {
   ASSERT_EQ(sample.parameters.size(), 4U);
   const test::NormalPosterior expected = test::posterior_of(s.model, s.measured, kTaskNoise);
   for (std::size_t i = 0; i < 4; ++i) {
-    const double sd = std::sqrt(expected.covariance(signed_index(i), signed_index(i)));
-    EXPECT_NEAR(sample.parameters[i].mean, expected.mean(signed_index(i)), 0.13 * sd) << i;
+    const double sd = std::sqrt(expected.covariance(i, i));
+    EXPECT_NEAR(sample.parameters[i].mean, expected.mean(i), 0.13 * sd) << i;
     EXPECT_NEAR(sample.parameters[i].sd, sd, 0.1 * sd) << i;
   }
 }

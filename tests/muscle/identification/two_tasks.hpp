@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/output_error/parametric_model.hpp"
 #include "veridyn/numerics/random.hpp"
 
@@ -26,8 +25,8 @@ class TwoTasks final : public estimation::ParametricModel {
                              estimation::ModelResponse& response) const override {
     const Eigen::MatrixXd X = design(segment);
     response.output = X * theta;
-    response.sensitivity.resize(X.rows(), signed_index(active.size()));
-    for (std::size_t j = 0; j < active.size(); ++j) response.sensitivity.col(signed_index(j)) = X.col(active[j]);
+    response.sensitivity.resize(X.rows(), active.size());
+    for (std::size_t j = 0; j < active.size(); ++j) response.sensitivity.col(j) = X.col(active[j]);
     return true;
   }
   /// dy/dtheta.
@@ -77,7 +76,7 @@ inline NormalPosterior posterior_of(const TwoTasks& model, const std::vector<est
   Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
   Eigen::Vector4d right = Eigen::Vector4d::Zero();
   for (Eigen::Index i = 0; i < 4; ++i) {
-    const estimation::ModelParameter& p = model.parameters()[at(i)];
+    const estimation::ModelParameter& p = model.parameters()[i];
     information(i, i) += 1.0 / (p.prior_sigma * p.prior_sigma);
     right(i) += p.start / (p.prior_sigma * p.prior_sigma);
   }

@@ -69,8 +69,8 @@ TEST(ExternalLoad, ForceAndPointOfOneFrameBecomeTheMomentAboutItsOrigin) {
   const Eigen::Vector3d f(10.0 * t, 700.0 + 20.0 * std::sin(3.0 * t), -5.0), p(0.1 + 0.2 * t, 0.0, 0.05);
   const Eigen::Vector3d m = p.cross(f) + Eigen::Vector3d(0.0, 1.0, 0.0);
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_NEAR(value_at(load.force[i], t), f(static_cast<Eigen::Index>(i)), 1e-9);
-    EXPECT_NEAR(value_at(load.moment[i], t), m(static_cast<Eigen::Index>(i)), 1e-9);
+    EXPECT_NEAR(value_at(load.force[i], t), f(i), 1e-9);
+    EXPECT_NEAR(value_at(load.moment[i], t), m(i), 1e-9);
     EXPECT_EQ(value_at(load.point[i], t), 0.0);
   }
   // Between samples a cubic spline: its error is a four hundredth of h^4 f''''.

@@ -58,7 +58,7 @@ TEST(OsimReader, ReadsTheBuiltInArmWithItsDefaultsBlock) {
   EXPECT_DOUBLE_EQ(std::get<ThelenCurves>(triceps.parameters.curves).Flen, 1.6);
   EXPECT_DOUBLE_EQ(triceps.parameters.musculotendon.activation_time_constant, 0.010);
   ASSERT_EQ(triceps.wraps.size(), 2u);
-  EXPECT_EQ(model.wrap_objects[static_cast<std::size_t>(triceps.wraps[1].object)].shape, WrapShape::kCylinder);
+  EXPECT_EQ(model.wrap_objects[triceps.wraps[1].object].shape, WrapShape::kCylinder);
   EXPECT_EQ(triceps.wraps[1].first_point, 2);
   EXPECT_EQ(triceps.wraps[1].last_point, 3);
   EXPECT_TRUE(model.unsupported.empty());
@@ -100,7 +100,7 @@ TEST(OsimReader, TakesArm26sOwnNumbersNotTheClassDefaults) {
   SKIP_WITHOUT_MODELS();
   const Model model = read_osim(kModels / "arm26.osim");
   EXPECT_DOUBLE_EQ(model.gravity.y(), -9.8066);
-  const MuscleParameters& p = model.muscles[static_cast<std::size_t>(model.muscle("TRIlong"))].parameters;
+  const MuscleParameters& p = model.muscles[model.muscle("TRIlong")].parameters;
   EXPECT_DOUBLE_EQ(p.musculotendon.max_isometric_force, 798.52);
   EXPECT_DOUBLE_EQ(p.musculotendon.pennation_angle_at_optimal, 0.20943951);
   EXPECT_DOUBLE_EQ(std::get<ThelenCurves>(p.curves).tendon_strain, 0.033);

@@ -98,7 +98,7 @@ ArmCounts count_arms(const Model& model, int poses) {
   for (int n = 0; n < poses; ++n) {
     Eigen::VectorXd q = model.default_pose();
     for (Eigen::Index c = 0; c < q.size(); ++c) {
-      const Coordinate& k = model.coordinates[static_cast<std::size_t>(c)];
+      const Coordinate& k = model.coordinates[c];
       q(c) = k.low + (k.high - k.low) * static_cast<double>(random()) / 4294967295.0;
     }
     posed.pose(q);
@@ -118,8 +118,7 @@ ArmCounts count_arms(const Model& model, int poses) {
         }
         for (std::size_t k = 0; k < error.size(); ++k) {
           const MusclePaths::Pair& pair = posed.paths.pairs()[k];
-          if (pair.coordinate == c)
-            error[k] = std::min(error[k], std::abs(slope[static_cast<std::size_t>(pair.muscle)] - gradient[k]));
+          if (pair.coordinate == c) error[k] = std::min(error[k], std::abs(slope[pair.muscle] - gradient[k]));
         }
       }
     }

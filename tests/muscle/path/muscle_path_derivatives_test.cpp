@@ -24,8 +24,7 @@ TEST(MusclePaths, JetsCarryTheDerivativesOfTheMomentArms) {
       arm.pose(q);
       for (std::size_t k = 0; k < arm.paths.pairs().size(); ++k) {
         const auto pair = arm.paths.pairs()[k];
-        EXPECT_NEAR(workspace.length[static_cast<std::size_t>(pair.muscle)].v[pair.coordinate],
-                    arm.workspace.gradient[k], 3e-7);
+        EXPECT_NEAR(workspace.length[pair.muscle].v[pair.coordinate], arm.workspace.gradient[k], 3e-7);
       }
       for (int c = 0; c < 2; ++c) {
         const double h = 1e-5;

@@ -20,7 +20,7 @@ TEST(MusclePaths, PolylinesHaveTheLengthOfTheirPathAndStayOnTheObjects) {
       const auto line = arm.paths.polyline(arm.kinematics, arm.q.data(), m, 40);
       double length = 0.0;
       for (std::size_t i = 0; i + 1 < line.size(); ++i) length += (line[i + 1] - line[i]).norm();
-      EXPECT_NEAR(length, arm.workspace.length[static_cast<std::size_t>(m)], 2e-4) << m;
+      EXPECT_NEAR(length, arm.workspace.length[m], 2e-4) << m;
     }
   }
 }
@@ -31,15 +31,15 @@ TEST(MusclePaths, PointInsideAWrapObjectIsNamedAndThePathStaysFinite) {
   for (Muscle& muscle : model.muscles)
     if (!muscle.wraps.empty()) wrapped = &muscle;
   ASSERT_NE(wrapped, nullptr);
-  const WrapObject& object = model.wrap_objects[static_cast<std::size_t>(wrapped->wraps[0].object)];
-  PathPoint& point = wrapped->points[static_cast<std::size_t>(wrapped->wraps[0].first_point)];
+  const WrapObject& object = model.wrap_objects[wrapped->wraps[0].object];
+  PathPoint& point = wrapped->points[wrapped->wraps[0].first_point];
   point.body = object.body;
   point.location = object.placement.translation;
   PosedArm arm(model);
   arm.pose(model.default_pose());
   const auto inside = arm.paths.points_inside(arm.kinematics, arm.q.data());
   ASSERT_FALSE(inside.empty());
-  EXPECT_EQ(model.muscles[static_cast<std::size_t>(inside[0].muscle)].name(), wrapped->name());
+  EXPECT_EQ(model.muscles[inside[0].muscle].name(), wrapped->name());
   EXPECT_EQ(inside[0].point, point.name);
   EXPECT_EQ(inside[0].object, object.name);
   EXPECT_NEAR(inside[0].depth, object.dimensions[0], 1e-12);  // at the centre of a sphere

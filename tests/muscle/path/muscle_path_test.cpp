@@ -64,8 +64,7 @@ void expect_differences(PosedArm& arm, const std::vector<Eigen::VectorXd>& poses
         if (arm.paths.pairs()[k].coordinate != c) continue;
         const auto m = static_cast<std::size_t>(arm.paths.pairs()[k].muscle);
         EXPECT_NEAR(gradient[k], slope[m], tolerance)
-            << arm.model.muscles[m].name() << " about " << arm.model.coordinates[static_cast<std::size_t>(c)].name
-            << " at " << q.transpose();
+            << arm.model.muscles[m].name() << " about " << arm.model.coordinates[c].name << " at " << q.transpose();
         slope[m] = 0.0;
       }
       for (const double left : slope) EXPECT_NEAR(left, 0.0, tolerance);  // no pair is missing
@@ -108,14 +107,14 @@ TEST(MusclePaths, OfArm26AreOpenSimsOverTheSmoothPartOfTheGrid) {
     }
     if (opensim_drops_the_wrap(name, shoulder)) {
       ++lifted;
-      EXPECT_GT(arm.workspace.length[static_cast<std::size_t>(m)], std::stod(row[3])) << at;
-      EXPECT_NEAR(arm.workspace.length[static_cast<std::size_t>(m)], std::stod(row[3]), 1.4e-3) << at;
+      EXPECT_GT(arm.workspace.length[m], std::stod(row[3])) << at;
+      EXPECT_NEAR(arm.workspace.length[m], std::stod(row[3]), 1.4e-3) << at;
       EXPECT_NEAR(arm.moment_arm(m, 0), std::stod(row[6]), 2e-3) << at;
       continue;
     }
     ++compared;
     const double tolerance = name == "BICshort" ? 1e-9 : (wrapped ? 1e-4 : 1e-5);
-    EXPECT_NEAR(arm.workspace.length[static_cast<std::size_t>(m)], std::stod(row[3]), tolerance) << at;
+    EXPECT_NEAR(arm.workspace.length[m], std::stod(row[3]), tolerance) << at;
     EXPECT_NEAR(arm.moment_arm(m, 1), std::stod(row[7]), 2e-4) << at;
     if (!opensim_arm_is_off(name, shoulder)) {
       EXPECT_NEAR(arm.moment_arm(m, 0), std::stod(row[6]), 2e-4) << at;
@@ -140,14 +139,13 @@ TEST(MusclePaths, OfArm26AreContinuousInBothJoints) {
         const double angle = (moving == 0 ? -90.0 : 0.0) + kStepDeg * i;
         moving == 0 ? arm.pose_deg(angle, fixed) : arm.pose_deg(fixed, angle);
         for (int m = 0; m < arm.paths.muscles(); ++m) {
-          const auto k = static_cast<std::size_t>(m);
-          const double now = arm.workspace.length[k], arm_now = arm.moment_arm(m, moving);
+          const double now = arm.workspace.length[m], arm_now = arm.moment_arm(m, moving);
           if (i > 0) {
-            EXPECT_NEAR(now - length[k], -0.5 * (arms[k] + arm_now) * kStepDeg * kDegree, kJump)
-                << arm.model.muscles[k].name() << " at " << angle << ", the other " << fixed;
+            EXPECT_NEAR(now - length[m], -0.5 * (arms[m] + arm_now) * kStepDeg * kDegree, kJump)
+                << arm.model.muscles[m].name() << " at " << angle << ", the other " << fixed;
           }
-          length[k] = now;
-          arms[k] = arm_now;
+          length[m] = now;
+          arms[m] = arm_now;
         }
       }
     }
@@ -175,8 +173,7 @@ TEST(MusclePaths, ReproduceOpenSimsOwnWrapInItsComparisonMode) {
     if (opensim_arm_is_off(name, shoulder)) continue;
     arm.pose_deg(shoulder, std::stod(row[1]));
     const int m = arm.model.muscle(name);
-    EXPECT_NEAR(arm.workspace.length[static_cast<std::size_t>(m)], std::stod(row[3]), 2e-6)
-        << name << " " << row[0] << " " << row[1];
+    EXPECT_NEAR(arm.workspace.length[m], std::stod(row[3]), 2e-6) << name << " " << row[0] << " " << row[1];
     // OpenSim's "virtual work" moment arms, which are not the derivatives of its lengths.
     EXPECT_NEAR(arm.moment_arm(m, 0), std::stod(row[4]), 3e-5) << name << " " << row[0] << " " << row[1];
     EXPECT_NEAR(arm.moment_arm(m, 1), std::stod(row[5]), 5e-6) << name << " " << row[0] << " " << row[1];
@@ -195,7 +192,7 @@ void expect_believable_arms(const Model& model, int poses, double tolerance = 1e
   for (int n = 0; n < poses; ++n) {
     Eigen::VectorXd q = model.default_pose();
     for (Eigen::Index c = 0; c < q.size(); ++c) {
-      const Coordinate& k = model.coordinates[static_cast<std::size_t>(c)];
+      const Coordinate& k = model.coordinates[c];
       const double u = part(random);
       if (k.high > k.low && k.high - k.low < 20.0) q[c] = k.low + (k.high - k.low) * u;
     }
@@ -264,7 +261,7 @@ Model over_two_cylinders(double shank_below) {
   };
   const int condyle = cylinder("condyle", humerus, elbow, 0.025);
   const int shank = cylinder("shank", forearm, Eigen::Vector3d(0.0, -shank_below, 0.0), 0.028);
-  Muscle gastrocnemius = model.muscles[static_cast<std::size_t>(model.muscle("brachialis"))];
+  Muscle gastrocnemius = model.muscles[model.muscle("brachialis")];
   gastrocnemius.parameters.name = "gastrocnemius";
   const auto point = [](const char* name, int body, const Eigen::Vector3d& at) {
     PathPoint p;
@@ -325,8 +322,7 @@ void compare_random_poses(const std::string& file, const std::string& prefix) {
     arm.pose(at[std::stoi(lengths[i][0])]);
     const int m = arm.model.muscle(lengths[i][1]);
     ASSERT_GE(m, 0);
-    EXPECT_NEAR(arm.workspace.length[static_cast<std::size_t>(m)], std::stod(lengths[i][2]), 1e-9)
-        << lengths[i][1] << " pose " << lengths[i][0];
+    EXPECT_NEAR(arm.workspace.length[m], std::stod(lengths[i][2]), 1e-9) << lengths[i][1] << " pose " << lengths[i][0];
   }
   const auto arms = csv(veridyn::test::shared_folder() / "reference/opensim" / (prefix + "_momentarms.csv"));
   for (std::size_t i = 1; i < arms.size(); ++i) {
@@ -363,9 +359,8 @@ TEST(MusclePaths, OfTheBuiltInArmHaveMomentArmsThatAreDerivatives) {
 TEST(MusclePaths, MovingPointsStayWhereTheRangeOfTheirCoordinateEnds) {
   Model model = load_model("arm").model();
   const int m = model.muscle("brachialis");
-  const auto k = static_cast<std::size_t>(m);
-  model.muscles[k].wraps.clear();
-  PathPoint& point = model.muscles[k].points[0];
+  model.muscles[m].wraps.clear();
+  PathPoint& point = model.muscles[m].points[0];
   const Eigen::Vector3d home = point.location;
   point.kind = PathPointKind::kMoving;
   point.moving_coordinate = {1, -1, -1};
@@ -376,12 +371,12 @@ TEST(MusclePaths, MovingPointsStayWhereTheRangeOfTheirCoordinateEnds) {
   for (const double q : {model.coordinates[1].low - 0.3, 1.0, model.coordinates[1].high + 0.2}) {
     const double clamped = std::clamp(q, model.coordinates[1].low, model.coordinates[1].high);
     Model fixed_model = model;
-    fixed_model.muscles[k].points[0].kind = PathPointKind::kFixed;
-    fixed_model.muscles[k].points[0].location = home + Eigen::Vector3d(0.02 * clamped, 0.0, 0.0);
+    fixed_model.muscles[m].points[0].kind = PathPointKind::kFixed;
+    fixed_model.muscles[m].points[0].location = home + Eigen::Vector3d(0.02 * clamped, 0.0, 0.0);
     PosedArm fixed(fixed_model);
     moving.pose(Eigen::Vector2d(0.3, q));
     fixed.pose(Eigen::Vector2d(0.3, q));
-    EXPECT_NEAR(moving.workspace.length[k], fixed.workspace.length[k], 1e-15) << q;
+    EXPECT_NEAR(moving.workspace.length[m], fixed.workspace.length[m], 1e-15) << q;
     // Beyond the range it does not move: the arm is that of a fixed point too.
     EXPECT_EQ(std::abs(moving.moment_arm(m, 1) - fixed.moment_arm(m, 1)) < 1e-15, q != clamped) << q;
   }

@@ -25,7 +25,7 @@ TEST(FittedPaths, MomentArmsAreTheDerivativesOfTheFittedLengths) {
       for (std::size_t m = 0; m < 6; ++m) left[m] = length[m].v.head<2>();
       for (std::size_t k = 0; k < gradient.size(); ++k) {
         const auto pair = fit.fitted.pairs()[k];
-        left[static_cast<std::size_t>(pair.muscle)][pair.coordinate] -= gradient[k].a;
+        left[pair.muscle][pair.coordinate] -= gradient[k].a;
       }
       for (const Eigen::Vector2d& rest : left) EXPECT_NEAR(rest.norm(), 0.0, 1e-13);
     }

@@ -29,7 +29,7 @@ void expect_stated_errors(const Fit& fit) {
   for (int i = 0; i < 300; ++i) {
     Eigen::VectorXd q = fit.model.default_pose();
     for (Eigen::Index c = 0; c < q.size(); ++c) {
-      const Coordinate& k = fit.model.coordinates[static_cast<std::size_t>(c)];
+      const Coordinate& k = fit.model.coordinates[c];
       q[c] = k.low + (k.high - k.low) * uniform();
     }
     update_positions(fit.mechanism, q.data(), kinematics);

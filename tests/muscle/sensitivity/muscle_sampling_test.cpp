@@ -62,7 +62,7 @@ TEST(MuscleSensitivity, IsTheMeanOfSimulationsOfTheChangedModel) {
     const double nrmse =
         std::sqrt((q - target).squaredNorm() / static_cast<double>(q.size())) / (target.maxCoeff() - target.minCoeff());
     // Two integrations to 1e-7 with steps of their own.
-    EXPECT_NEAR(found.sampling.mean(static_cast<Eigen::Index>(m), 1), nrmse, 1e-5) << m;
+    EXPECT_NEAR(found.sampling.mean(m, 1), nrmse, 1e-5) << m;
     EXPECT_GT(nrmse, 1e-3);
   }
 }

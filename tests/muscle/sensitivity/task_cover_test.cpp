@@ -72,7 +72,7 @@ TEST(TaskCover, ComesToTheBestOfAllSetsByExchangesMostly) {
     while (set.size() < 6) set.push_back(random.index(40));
     for (Eigen::Index m = 0; m < 8; ++m) {
       double most = 0.0;
-      for (const std::size_t t : set) most = std::max(most, nrmse(m, static_cast<Eigen::Index>(t)));
+      for (const std::size_t t : set) most = std::max(most, nrmse(m, t));
       weakest = std::min(weakest, most / nrmse.row(m).maxCoeff());
     }
     EXPECT_LE(weakest, cover.chosen->weakest);

@@ -49,8 +49,7 @@ TEST(TaskResponses, OfManyPointsAreThoseOfEach) {
   EXPECT_TRUE(table.completed);
   EXPECT_EQ(table.simulations, 4U);
   for (Eigen::Index point = 0; point < 2; ++point) {
-    for (std::size_t t = 0; t < 2; ++t)
-      EXPECT_EQ(table.nrmse(point, static_cast<Eigen::Index>(t)), responses.nrmse(tasks[t], points.row(point)));
+    for (std::size_t t = 0; t < 2; ++t) EXPECT_EQ(table.nrmse(point, t), responses.nrmse(tasks[t], points.row(point)));
   }
 }
 

@@ -91,8 +91,8 @@ TEST(ComputedMuscleControl, FindsOpenSimsActivationsAndTracksCloser) {
         std::max(opensim, std::abs(table.number(i, "r_elbow_flex_rad") - table.number(i, "desired_r_elbow_flex_rad")));
     ++rows;
     for (std::size_t m = 0; m < 6; ++m) {
-      sum[m] += std::abs(r.trajectory.activation(at, static_cast<Eigen::Index>(m)) -
-                         table.number(i, system.model().muscles[m].name() + "_activation"));
+      sum[m] +=
+          std::abs(r.trajectory.activation(at, m) - table.number(i, system.model().muscles[m].name() + "_activation"));
     }
   }
   EXPECT_LT(r.tracking_error(1), 3e-3);

@@ -44,14 +44,12 @@ Differences compare(const std::string& kind, int number, PathSource paths) {
   EXPECT_EQ(t.time.size(), table.rows.size());
   Differences d;
   for (std::size_t i = 0; i < std::min(t.time.size(), table.rows.size()); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    d.angle_deg = std::max({d.angle_deg, std::abs(t.q(row, 0) - table.number(i, "r_shoulder_elev_rad")) / kDegree,
-                            std::abs(t.q(row, 1) - table.number(i, "r_elbow_flex_rad")) / kDegree});
+    d.angle_deg = std::max({d.angle_deg, std::abs(t.q(i, 0) - table.number(i, "r_shoulder_elev_rad")) / kDegree,
+                            std::abs(t.q(i, 1) - table.number(i, "r_elbow_flex_rad")) / kDegree});
     for (std::size_t m = 0; m < system.muscles().size(); ++m) {
       const std::string& name = system.model().muscles[m].name();
-      const auto column = static_cast<Eigen::Index>(m);
-      d.fiber = std::max(d.fiber, std::abs(t.fiber_length(row, column) - table.number(i, name + "_fiber_length_m")));
-      d.force = std::max(d.force, std::abs(t.tendon_force(row, column) - table.number(i, name + "_tendon_force_N")));
+      d.fiber = std::max(d.fiber, std::abs(t.fiber_length(i, m) - table.number(i, name + "_fiber_length_m")));
+      d.force = std::max(d.force, std::abs(t.tendon_force(i, m) - table.number(i, name + "_tendon_force_N")));
     }
   }
   return d;
@@ -220,7 +218,7 @@ TEST(ForwardSimulation, RunsEveryModelOfOpenSim) {
     const MusculoskeletalSystem system(read_osim(entry.path()), {.without_unsupported = true});
     StartState start = default_start(system.model());
     for (Eigen::Index i = 0; i < start.q.size(); ++i) {
-      const Coordinate& c = system.model().coordinates[static_cast<std::size_t>(i)];
+      const Coordinate& c = system.model().coordinates[i];
       start.q(i) = std::clamp(start.q(i), c.low, c.high);
     }
     Progress progress;

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
 
 namespace veridyn::muscle {
@@ -62,8 +61,8 @@ TEST(JointReactions, MusclesPressTheJointTogether) {
   arm.system.paths().evaluate(kinematics, q.data(), paths);
   for (std::size_t m = 0; m < model.muscles.size(); ++m) {
     SCOPED_TRACE(model.muscles[m].name());
-    estimation::RowMatrix tension = estimation::RowMatrix::Zero(1, signed_index(model.muscles.size()));
-    tension(0, signed_index(m)) = 100.0;
+    estimation::RowMatrix tension = estimation::RowMatrix::Zero(1, model.muscles.size());
+    tension(0, m) = 100.0;
     const JointReactions with = arm.reactions(ReactionFrame::kGround, tension);
     // It pulls the forearm along the last piece of its path; the joint holds against that.
     const std::vector<Eigen::Vector3d> line = arm.system.paths().polyline(kinematics, q.data(), static_cast<int>(m));

@@ -31,8 +31,7 @@ TEST(MotionAnalysis, StaticOptimisationOfAMotionIsOpenSims) {
     // The jerk of this motion jumps at its ends: there any spline rings, each differently.
     const double tolerance = a.time[i] < 0.02 || a.time[i] > 0.98 ? 3e-4 : 1e-4;
     for (std::size_t m = 0; m < 6; ++m) {
-      EXPECT_NEAR(a.activation(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(m)),
-                  table.number(i, system.model().muscles[m].name() + "_activation"), tolerance)
+      EXPECT_NEAR(a.activation(i, m), table.number(i, system.model().muscles[m].name() + "_activation"), tolerance)
           << a.time[i];
     }
   }

@@ -28,9 +28,9 @@ TEST(MusculoskeletalSystem, APathPointInsideAWrapObjectIsNotedWithPoseAndDepth) 
   Model model = load_model("arm").model();
   for (Muscle& muscle : model.muscles) {
     if (muscle.wraps.empty()) continue;
-    const WrapObject& object = model.wrap_objects[static_cast<std::size_t>(muscle.wraps[0].object)];
+    const WrapObject& object = model.wrap_objects[muscle.wraps[0].object];
     if (object.shape != WrapShape::kSphere) continue;
-    PathPoint& point = muscle.points[static_cast<std::size_t>(muscle.wraps[0].first_point)];
+    PathPoint& point = muscle.points[muscle.wraps[0].first_point];
     point.body = object.body;
     point.location = object.placement * Eigen::Vector3d(object.dimensions[0] - 0.0015, 0.0, 0.0);
     const MusculoskeletalSystem system(model);

@@ -51,7 +51,7 @@ TEST(PassiveForces, AMassOnAPathSpringSwingsAsItsEquationSays) {
   const MuscleTrajectory t = released(model, y0 - 0.05, 1.0);
   ASSERT_EQ(t.end, SimulationEnd::kCompleted);
   for (std::size_t i = 0; i < t.time.size(); ++i)
-    EXPECT_NEAR(t.q(static_cast<Eigen::Index>(i), 0), y0 - 0.05 * std::cos(omega * t.time[i]), 1e-7) << t.time[i];
+    EXPECT_NEAR(t.q(i, 0), y0 - 0.05 * std::cos(omega * t.time[i]), 1e-7) << t.time[i];
 }
 
 TEST(PassiveForces, ALigamentHoldsAMassWhereItsCurveCarriesTheWeight) {
@@ -87,7 +87,7 @@ TEST(PassiveForces, ABallBouncesToItsHeightAndWithDissipationComesToRest) {
     const double depth = std::max(0.0, 0.1 - bounce.q(i, 0));
     const double energy =
         bounce.qdot(i, 0) * bounce.qdot(i, 0) + 20.0 * bounce.q(i, 0) + 0.4 * k * std::pow(depth, 2.5);
-    EXPECT_NEAR(energy, 20.0 * 0.2, 1e-5) << bounce.time[static_cast<std::size_t>(i)];
+    EXPECT_NEAR(energy, 20.0 * 0.2, 1e-5) << bounce.time[i];
     lowest = std::min(lowest, bounce.q(i, 0));
   }
   EXPECT_LT(lowest, 0.1);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
 #include "veridyn/muscle/simulation/system_evaluator.hpp"
 

@@ -99,7 +99,7 @@ TEST(PoseTable, MomentArmsOfTheCsvAreMinusTheSlopesOfItsLengths) {
   const auto number = [&](std::size_t row, const std::string& name) {
     const auto column = std::find(rows[0].begin(), rows[0].end(), name);
     EXPECT_NE(column, rows[0].end()) << name;
-    return column == rows[0].end() ? kNaN : std::stod(rows[row][static_cast<std::size_t>(column - rows[0].begin())]);
+    return column == rows[0].end() ? kNaN : std::stod(rows[row][column - rows[0].begin()]);
   };
   EXPECT_EQ(number(2, "elbow_flexion[rad]"), 1.0);
   const double slope = (number(3, "brachialis.length[m]") - number(1, "brachialis.length[m]")) / (2.0 * h);

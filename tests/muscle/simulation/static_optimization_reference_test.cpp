@@ -43,7 +43,7 @@ struct ReferenceMotion {
     paths.evaluate(kinematics, q.data(), workspace);
     paths.speeds(workspace, qdot.data(), speed.data());
     arms.setZero();
-    for (Eigen::Index i = 0; i < 6; ++i) length(i) = workspace.length[static_cast<std::size_t>(i)];
+    for (Eigen::Index i = 0; i < 6; ++i) length(i) = workspace.length[i];
     for (std::size_t p = 0; p < paths.pairs().size(); ++p)
       arms(paths.pairs()[p].muscle, paths.pairs()[p].coordinate) = -workspace.gradient[p];
   }
@@ -72,18 +72,17 @@ TEST_P(StaticOptimizationReference, ControlsAreThoseOfOpenSim) {
     const auto worst = [&](const StaticOptimizationFrame& f) {
       double greatest = 0.0;
       for (std::size_t i = 0; i < 6; ++i)
-        greatest = std::max(greatest, std::abs(f.activation(static_cast<Eigen::Index>(i)) -
-                                               t.number(row, std::string(kNames[i]) + "_activation")));
+        greatest =
+            std::max(greatest, std::abs(f.activation(i) - t.number(row, std::string(kNames[i]) + "_activation")));
       for (std::size_t j = 0; j < 2; ++j)
-        greatest = std::max(greatest, std::abs(f.reserve(static_cast<Eigen::Index>(j)) - t.number(row, kReserves[j])));
+        greatest = std::max(greatest, std::abs(f.reserve(j) - t.number(row, kReserves[j])));
       return greatest;
     };
     // The generalised forces that OpenSim's own answer has: all of the motion, the optimum alone is compared.
     Eigen::VectorXd theirs = Eigen::VectorXd::Zero(2);
     for (std::size_t i = 0; i < 6; ++i)
-      theirs += motion.arms.row(static_cast<Eigen::Index>(i)).transpose() *
-                t.number(row, std::string(kNames[i]) + "_force_N");
-    for (std::size_t j = 0; j < 2; ++j) theirs(static_cast<Eigen::Index>(j)) += t.number(row, kReserves[j]);
+      theirs += motion.arms.row(i).transpose() * t.number(row, std::string(kNames[i]) + "_force_N");
+    for (std::size_t j = 0; j < 2; ++j) theirs(j) += t.number(row, kReserves[j]);
     optimizer.solve(motion.arms, motion.length, motion.speed, theirs, frame);
     ASSERT_TRUE(frame.usable());
     same_balance = std::max(same_balance, worst(frame));

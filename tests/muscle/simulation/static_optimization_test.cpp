@@ -48,12 +48,11 @@ void expect_optimal(const Problem& q, const StaticOptimizationOptions& options, 
   // dF/da by differences of the formulation itself
   const MuscleGroup<double> group(q.muscles);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const auto e = static_cast<std::size_t>(i);
     const auto force = [&](double a) {
-      if (options.force == StaticForce::kIsometric) return a * q.muscles[e].musculotendon.max_isometric_force;
+      if (options.force == StaticForce::kIsometric) return a * q.muscles[i].musculotendon.max_isometric_force;
       if (options.force == StaticForce::kAsOpenSim)
-        return a * group.rigid_forces(e, 1.0, q.length(i), q.speed(i)).active;
-      const RigidTendonForces r = group.rigid_forces(e, a, q.length(i), q.speed(i));
+        return a * group.rigid_forces(i, 1.0, q.length(i), q.speed(i)).active;
+      const RigidTendonForces r = group.rigid_forces(i, a, q.length(i), q.speed(i));
       return r.active + r.passive;
     };
     const double a = f.activation(i), h = 1e-6;
@@ -61,19 +60,18 @@ void expect_optimal(const Problem& q, const StaticOptimizationOptions& options, 
     const double gain = (force(a + h) - force(a - h)) / (2.0 * h);
     const double pull = gain * q.arms.row(i).dot(f.multiplier), cost = p * std::pow(a, p - 1.0);
     const double slack = 1e-6 * (1.0 + std::abs(pull));
-    EXPECT_GE(a, q.muscles[e].min_control);
-    EXPECT_LE(a, q.muscles[e].max_control);
-    if (a > q.muscles[e].min_control + 1e-9) {
+    EXPECT_GE(a, q.muscles[i].min_control);
+    EXPECT_LE(a, q.muscles[i].max_control);
+    if (a > q.muscles[i].min_control + 1e-9) {
       EXPECT_GE(pull - cost, -slack) << i;
     }
-    if (a < q.muscles[e].max_control - 1e-9) {
+    if (a < q.muscles[i].max_control - 1e-9) {
       EXPECT_LE(pull - cost, slack) << i;
     }
   }
   for (Eigen::Index j = 0; j < m && !options.reserve.empty(); ++j) {
     const double c = f.reserve(j);
-    EXPECT_NEAR(std::copysign(p * std::pow(std::abs(c), p - 1.0), c),
-                options.reserve[static_cast<std::size_t>(j)] * f.multiplier(j),
+    EXPECT_NEAR(std::copysign(p * std::pow(std::abs(c), p - 1.0), c), options.reserve[j] * f.multiplier(j),
                 1e-6 * (1.0 + std::abs(f.multiplier(j))));
   }
 }

@@ -21,7 +21,7 @@ std::vector<double> moving_state(const MusculoskeletalSystem& system, SystemEval
   x[3] = -0.8;
   evaluator.set_motion(x.data(), x.data() + layout.free);
   evaluator.start_muscles(activation.data(), x.data());
-  for (const int l : layout.fiber_length) x[at(l)] *= 0.99;
+  for (const int l : layout.fiber_length) x[l] *= 0.99;
   return x;
 }
 
@@ -38,7 +38,7 @@ TEST(SystemDerivatives, OfTheStateAreThoseOfDifferences) {
   ASSERT_TRUE(plain.derivative(x.data(), {u, {}}, rate.data()));
   for (std::size_t first = 0; first < n; first += kWidth) {
     std::vector<SimulationJet> xj(x.begin(), x.end()), rj(n);
-    for (std::size_t j = 0; j < kWidth && first + j < n; ++j) xj[first + j].v(signed_index(j)) = 1.0;
+    for (std::size_t j = 0; j < kWidth && first + j < n; ++j) xj[first + j].v(j) = 1.0;
     ASSERT_TRUE(jets.derivative(xj.data(), {u, {}}, rj.data()));
     for (std::size_t j = 0; j < kWidth && first + j < n; ++j) {
       const auto difference = [&](double h) {
@@ -55,7 +55,7 @@ TEST(SystemDerivatives, OfTheStateAreThoseOfDifferences) {
       for (const double value : fine) largest = std::max(largest, std::abs(value));
       for (std::size_t i = 0; i < n; ++i) {
         EXPECT_NEAR(rj[i].a, rate[i], 1e-9 * (1.0 + std::abs(rate[i]))) << system.state_name(i);
-        EXPECT_NEAR(rj[i].v(signed_index(j)), (4.0 * fine[i] - coarse[i]) / 3.0, 1e-6 * largest)
+        EXPECT_NEAR(rj[i].v(j), (4.0 * fine[i] - coarse[i]) / 3.0, 1e-6 * largest)
             << system.state_name(i) << " by " << system.state_name(first + j);
       }
     }
@@ -85,9 +85,9 @@ TEST(SystemDerivatives, OfMusclesAtTheStartAreThoseOfDifferences) {
   const std::vector<double> up = started(0.9 + h), down = started(0.9 - h);
   double largest = 0.0;
   for (const int l : layout.fiber_length) {
-    const double expected = (up[at(l)] - down[at(l)]) / (2.0 * h);
+    const double expected = (up[l] - down[l]) / (2.0 * h);
     largest = std::max(largest, std::abs(expected));
-    EXPECT_NEAR(xj[at(l)].v(0), expected, 1e-7) << system.state_name(at(l));
+    EXPECT_NEAR(xj[l].v(0), expected, 1e-7) << system.state_name(at(l));
   }
   EXPECT_GT(largest, 1e-3) << "the elbow's angle lengthens fibres";
 }

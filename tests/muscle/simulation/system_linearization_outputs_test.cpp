@@ -66,13 +66,13 @@ TEST_P(OutputsOfTheArm, AreThoseOfTheEvaluator) {
   double moment = 0.0;
   for (std::size_t p = 0; p < system.pairs().size(); ++p) {
     const MusclePaths::Pair pair = system.pairs()[p];
-    if (pair.coordinate == kElbow) moment -= evaluator.tendon_force()[at(pair.muscle)] * evaluator.path_gradient()[p];
+    if (pair.coordinate == kElbow) moment -= evaluator.tendon_force()[pair.muscle] * evaluator.path_gradient()[p];
   }
   EXPECT_NEAR(outputs.moment, moment, 1e-9 * std::abs(moment));
   for (std::size_t m = 0; m < 6; ++m) {
     EXPECT_NEAR(outputs.force[m], evaluator.tendon_force()[m], 1e-9 * (1.0 + evaluator.tendon_force()[m]));
     if (!GetParam()) {
-      EXPECT_EQ(outputs.fiber[m], x[at(system.layout().fiber_length[m])]);
+      EXPECT_EQ(outputs.fiber[m], x[system.layout().fiber_length[m]]);
       continue;
     }
     // A rigid tendon leaves the rest of the path to a fibre of constant height.

@@ -75,7 +75,7 @@ TEST_F(TangentsOfTheArm, AtTheStartGoWithANumberOfTheMuscle) {
     field_of(less[brachialis], field) -= 0.5 * h;
     const std::vector<double> S = start_tangents({{0, brachialis, field, 0.5}}, false, false, at_rest);
     expect_near(S, difference(started(0.9, more, at_rest), started(0.9, less, at_rest), h), 1e-6);
-    EXPECT_GT(std::abs(S[at(system.layout().fiber_length[brachialis])]), 1e-4);
+    EXPECT_GT(std::abs(S[system.layout().fiber_length[brachialis]]), 1e-4);
   }
 }
 
@@ -88,7 +88,7 @@ TEST_F(TangentsOfTheArm, AtTheStartGoWithTheExcitationWhereItIsTheActivation) {
   const std::vector<double> S = start_tangents(gain, false, true, at_rest);
   const Parameters own = parameters_of(system);
   expect_near(S, difference(started(0.9, own, more), started(0.9, own, less), h), 1e-6);
-  EXPECT_EQ(S[at(system.layout().activation[brachialis])], 2.0);
+  EXPECT_EQ(S[system.layout().activation[brachialis]], 2.0);
   for (const double value : start_tangents(gain, false, false, at_rest))
     EXPECT_EQ(value, 0.0) << "activations of their own do not follow the excitation";
 }
@@ -100,7 +100,7 @@ TEST_F(TangentsOfTheArm, AtTheStartStandStillWhereTheActivationIsAtItsLimit) {
   SystemLinearization linearization(system, parameters_of(system), gain, 1);
   std::vector<double> x(system.layout().size, 0.0), S(x.size(), 0.0);
   linearization.start_muscles(beyond.data(), true, x.data(), S.data());
-  EXPECT_EQ(x[at(system.layout().activation[brachialis])], 1.0);
+  EXPECT_EQ(x[system.layout().activation[brachialis]], 1.0);
   for (const double value : S) EXPECT_EQ(value, 0.0);
 }
 
@@ -113,15 +113,14 @@ TEST_F(TangentsOfTheArm, OfAnImplicitStageAreThoseOfItsSolution) {
   std::vector<double> base = started(0.9, parameters_of(system), at_rest);
   base[3] = 0.7;
   // Thelen's force-velocity curve has a corner at rest.
-  for (const int l : layout.fiber_length) base[at(l)] *= 0.98;
+  for (const int l : layout.fiber_length) base[l] *= 0.98;
   const std::size_t n = base.size();
   SystemLinearization linearization(system, parameters_of(system), {}, n);
   std::vector<double> x = base, rate(n), S(n * n, 0.0), S_rate(n * n, 0.0);
   for (std::size_t i = 0; i < n; ++i) S[i * n + i] = 1.0;
   ASSERT_TRUE(linearization.stage(step, x.data(), {u, {}}, rate.data()));
   linearization.tangent_rate(step, S.data(), S_rate.data());
-  for (const int l : layout.fiber_length)
-    EXPECT_NEAR(x[at(l)], base[at(l)] + step * rate[at(l)], 1e-12) << "the stage is solved";
+  for (const int l : layout.fiber_length) EXPECT_NEAR(x[l], base[l] + step * rate[l], 1e-12) << "the stage is solved";
   SystemEvaluator<double> evaluator(system);
   // The evaluator's solution is good to some 1e-9, which differences would magnify: improved by steps of Newton.
   const auto solved = [&](const std::vector<double>& from, std::vector<double>& rate_there) {
@@ -130,12 +129,12 @@ TEST_F(TangentsOfTheArm, OfAnImplicitStageAreThoseOfItsSolution) {
     for (int k = 0; k < 3; ++k) {
       constexpr double kMove = 1e-7;
       std::vector<double> moved = at_end;
-      for (const int l : layout.fiber_length) moved[at(l)] += kMove;
+      for (const int l : layout.fiber_length) moved[l] += kMove;
       EXPECT_TRUE(evaluator.derivative(moved.data(), {u, {}}, moved_rate.data()));
       EXPECT_TRUE(evaluator.derivative(at_end.data(), {u, {}}, rate_there.data()));
       for (const int l : layout.fiber_length) {
-        const double slope = (moved_rate[at(l)] - rate_there[at(l)]) / kMove;
-        at_end[at(l)] -= (at_end[at(l)] - from[at(l)] - step * rate_there[at(l)]) / (1.0 - step * slope);
+        const double slope = (moved_rate[l] - rate_there[l]) / kMove;
+        at_end[l] -= (at_end[l] - from[l] - step * rate_there[l]) / (1.0 - step * slope);
       }
     }
     EXPECT_TRUE(evaluator.derivative(at_end.data(), {u, {}}, rate_there.data()));
@@ -156,8 +155,8 @@ TEST_F(TangentsOfTheArm, OfAnImplicitStageAreThoseOfItsSolution) {
     double largest = 1.0;
     for (const double value : rate_by) largest = std::max(largest, std::abs(value));
     for (const int l : layout.fiber_length) {
-      EXPECT_NEAR(S[at(l) * n + j], by[at(l)], 1e-6) << "fibre " << l << " by " << system.state_name(j);
-      EXPECT_NEAR(S_rate[at(l) * n + j], rate_by[at(l)], 1e-5 * largest) << l << " by " << system.state_name(j);
+      EXPECT_NEAR(S[l * n + j], by[l], 1e-6) << "fibre " << l << " by " << system.state_name(j);
+      EXPECT_NEAR(S_rate[l * n + j], rate_by[l], 1e-5 * largest) << l << " by " << system.state_name(j);
     }
     for (std::size_t i = layout.free; i < 2 * layout.free; ++i)
       EXPECT_NEAR(S_rate[i * n + j], rate_by[i], 1e-4 * largest) << i << " by " << system.state_name(j);

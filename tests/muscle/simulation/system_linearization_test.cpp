@@ -7,7 +7,6 @@
 #include <filesystem>
 
 #include "tests/support/folders.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
 #include "veridyn/muscle/osim/osim_reader.hpp"
 
@@ -26,7 +25,7 @@ void expect_those_of_jets(const MusculoskeletalSystem& system, double tolerance)
   SystemEvaluator<double> plain(system);
   const Eigen::VectorXd pose = system.model().default_pose();
   for (std::size_t i = 0; i < layout.free; ++i) {
-    const Coordinate& c = system.model().coordinates[at(system.reduction().free()[i])];
+    const Coordinate& c = system.model().coordinates[system.reduction().free()[i]];
     x[i] = std::min(pose(system.reduction().free()[i]) + 0.1, c.high);
     x[layout.free + i] = 0.5 - 0.3 * static_cast<double>(i % 3);
   }
@@ -36,7 +35,7 @@ void expect_those_of_jets(const MusculoskeletalSystem& system, double tolerance)
   // Off equilibrium, so that fibres move.
   for (std::size_t m = 0; m < muscles; ++m) {
     if (layout.fiber_length[m] >= 0)
-      x[at(layout.fiber_length[m])] -= 1e-3 * system.muscles().settings(m).musculotendon.tendon_slack_length;
+      x[layout.fiber_length[m]] -= 1e-3 * system.muscles().settings(m).musculotendon.tendon_slack_length;
   }
   std::vector<MusculotendonParameters<double>> parameters;
   for (std::size_t m = 0; m < muscles; ++m) parameters.push_back(system.muscles().settings(m).musculotendon);
@@ -70,14 +69,14 @@ void expect_those_of_jets(const MusculoskeletalSystem& system, double tolerance)
     for (std::size_t j = 0; j < kWidth && first + j < columns; ++j) {
       const std::size_t k = first + j;
       SimulationJet& seed = k < n ? xj[k] : field_of(jets[fields[k - n].first], fields[k - n].second);
-      seed.v(signed_index(j)) = 1.0;
+      seed.v(j) = 1.0;
     }
     SystemEvaluator<SimulationJet> jet(system, system.muscles().with<SimulationJet>(jets));
     jet.hold(held.data());
     ASSERT_TRUE(jet.derivative(xj.data(), {u, {}}, rj.data()));
     for (std::size_t j = 0; j < kWidth && first + j < columns; ++j) {
       double largest = 1.0;  // columns of nothing but rounding (a translation) have no size of their own
-      for (std::size_t i = 0; i < n; ++i) largest = std::max(largest, std::abs(rj[i].v(signed_index(j))));
+      for (std::size_t i = 0; i < n; ++i) largest = std::max(largest, std::abs(rj[i].v(j)));
       for (std::size_t i = 0; i < n; ++i) {
         const double got = S_rate[i * columns + first + j];
         // Rows of activations that no unknown moves are not carried along.
@@ -89,7 +88,7 @@ void expect_those_of_jets(const MusculoskeletalSystem& system, double tolerance)
             std::find(layout.activation.begin(), layout.activation.end(), static_cast<int>(first + j)) !=
                 layout.activation.end())
           continue;
-        EXPECT_NEAR(got, rj[i].v(signed_index(j)), tolerance * largest)
+        EXPECT_NEAR(got, rj[i].v(j), tolerance * largest)
             << "state " << i << " (" << system.state_name(i) << ") by column " << first + j;
       }
     }

@@ -22,7 +22,7 @@ class Decay {
  public:
   Decay(const MusculoskeletalSystem& system, double stiff) : rate_(system.layout().size, 1.0) {
     for (const int l : system.layout().fiber_length)
-      if (l >= 0) rate_[static_cast<std::size_t>(l)] = stiff;
+      if (l >= 0) rate_[l] = stiff;
   }
   bool operator()(double, double step, double* x, double* rate) {
     implicit_ = implicit_ || step > 0.0;

@@ -46,8 +46,7 @@ TEST(PreparedTasks, TheStandardModelFollowsTheDesiredMotionAndRepeatsItsOwn) {
     ASSERT_GT(q[i].size(), 0);
     double largest = 0.0;
     for (Eigen::Index k = 0; k < q[i].rows(); ++k) {
-      const double desired =
-          tasks[i].task.desired.coordinate[1]->evaluate(tasks[i].time[static_cast<std::size_t>(k)]).value;
+      const double desired = tasks[i].task.desired.coordinate[1]->evaluate(tasks[i].time[k]).value;
       largest = std::max(largest, std::abs(q[i](k, 0) - desired));
     }
     EXPECT_NEAR(largest, tasks[i].tracking_error, 1e-4);

@@ -34,8 +34,8 @@ TEST(StateSpace, PolesAreThoseOfTheDenominator) {
   ASSERT_EQ(poles.size(), 3);
   std::vector<double> real(3), imaginary(3);
   for (Eigen::Index i = 0; i < 3; ++i) {
-    real[static_cast<std::size_t>(i)] = poles(i).real();
-    imaginary[static_cast<std::size_t>(i)] = poles(i).imag();
+    real[i] = poles(i).real();
+    imaginary[i] = poles(i).imag();
   }
   std::ranges::sort(real);
   std::ranges::sort(imaginary);

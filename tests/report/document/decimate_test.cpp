@@ -59,10 +59,10 @@ TEST(DecimateLine, KeepsTheExtremesOfEveryStretch) {
     const auto [low, high] =
         std::minmax_element(all.y.begin() + static_cast<long>(begin), all.y.begin() + static_cast<long>(end));
     for (const auto extreme : {low, high}) {
-      const double at = all.x[static_cast<std::size_t>(extreme - all.y.begin())];
+      const double at = all.x[extreme - all.y.begin()];
       const auto found = std::lower_bound(line.x.begin(), line.x.end(), at);
       ASSERT_TRUE(found != line.x.end() && *found == at) << "bucket " << k;
-      ASSERT_EQ(line.y[static_cast<std::size_t>(found - line.x.begin())], *extreme);
+      ASSERT_EQ(line.y[found - line.x.begin()], *extreme);
     }
   }
 }

@@ -44,8 +44,7 @@ TEST(RoundForStorage, StaysWithinHalfAStep) {
   const std::vector<double> rounded = round_for_storage(values, 20000.0);
   EXPECT_THAT(rounded[0], testing::DoubleEq(17.1235));
   for (int k = 0; k < 3; ++k) {
-    EXPECT_NEAR(rounded[static_cast<std::size_t>(k)], values[static_cast<std::size_t>(k)],
-                0.5 * (25.98765432 - 17.123456789) / 20000.0);
+    EXPECT_NEAR(rounded[k], values[k], 0.5 * (25.98765432 - 17.123456789) / 20000.0);
   }
   EXPECT_TRUE(std::isnan(rounded[3]));
 }

@@ -107,7 +107,7 @@ TEST(PlatformFigure, ItsActuatorsAreAsLongAsThePlatformsLegsInAnyPose) {
         const auto length = [&](std::size_t sample) {
           return (placed(scene, actuators[i].points[1], sample) - placed(scene, actuators[i].points[0], sample)).norm();
         };
-        EXPECT_NEAR(length(k) - length(0), lengths.position(static_cast<Eigen::Index>(i)), 1e-12) << name;
+        EXPECT_NEAR(length(k) - length(0), lengths.position(i), 1e-12) << name;
       }
     }
   }

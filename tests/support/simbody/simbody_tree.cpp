@@ -48,13 +48,13 @@ struct SimbodyTree::System {
   std::vector<int> slot;  ///< by coordinate: its place in Simbody's vectors
 
   [[nodiscard]] Eigen::VectorXd ours(const SimTK::Vector& v) const {
-    Eigen::VectorXd x(static_cast<Eigen::Index>(slot.size()));
-    for (std::size_t c = 0; c < slot.size(); ++c) x(static_cast<Eigen::Index>(c)) = v[slot[c]];
+    Eigen::VectorXd x(slot.size());
+    for (std::size_t c = 0; c < slot.size(); ++c) x(c) = v[slot[c]];
     return x;
   }
   [[nodiscard]] SimTK::Vector theirs(const Eigen::VectorXd& v) const {
     SimTK::Vector x(static_cast<int>(slot.size()));
-    for (std::size_t c = 0; c < slot.size(); ++c) x[slot[c]] = v(static_cast<Eigen::Index>(c));
+    for (std::size_t c = 0; c < slot.size(); ++c) x[slot[c]] = v(c);
     return x;
   }
 };
@@ -111,8 +111,8 @@ SimbodyTree::SimbodyTree(const TreeDescription& model) : system_(std::make_uniqu
         s.bodies[child] = custom.getMobilizedBodyIndex();
       }
       for (std::size_t c = 0; c < joint.coordinates.size(); ++c) {
-        of_coordinate[static_cast<std::size_t>(joint.coordinates[c])] = s.bodies[child];
-        local[static_cast<std::size_t>(joint.coordinates[c])] = static_cast<int>(c);
+        of_coordinate[joint.coordinates[c]] = s.bodies[child];
+        local[joint.coordinates[c]] = static_cast<int>(c);
       }
     }
   }
@@ -149,7 +149,7 @@ Eigen::MatrixXd SimbodyTree::mass_matrix() const {
   Eigen::MatrixXd ours(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = 0; j < n; ++j) {
-      ours(i, j) = M(system_->slot[static_cast<std::size_t>(i)], system_->slot[static_cast<std::size_t>(j)]);
+      ours(i, j) = M(system_->slot[i], system_->slot[j]);
     }
   }
   return ours;
@@ -164,8 +164,7 @@ Eigen::VectorXd SimbodyTree::inverse_dynamics(const Eigen::VectorXd& qddot) cons
 }
 
 TreeDescription::Frame SimbodyTree::body_pose(int body) const {
-  const SimTK::Transform& X = system_->matter.getMobilizedBody(system_->bodies[static_cast<std::size_t>(body)])
-                                  .getBodyTransform(system_->state);
+  const SimTK::Transform& X = system_->matter.getMobilizedBody(system_->bodies[body]).getBodyTransform(system_->state);
   TreeDescription::Frame p;
   for (int i = 0; i < 3; ++i) {
     p.translation(i) = X.p()[i];
@@ -175,14 +174,12 @@ TreeDescription::Frame SimbodyTree::body_pose(int body) const {
 }
 
 Eigen::Vector3d SimbodyTree::mass_center_velocity(int body) const {
-  const auto b = static_cast<std::size_t>(body);
-  return eigen(system_->matter.getMobilizedBody(system_->bodies[b])
-                   .findStationVelocityInGround(system_->state, vec(system_->mass_centers[b])));
+  return eigen(system_->matter.getMobilizedBody(system_->bodies[body])
+                   .findStationVelocityInGround(system_->state, vec(system_->mass_centers[body])));
 }
 
 Eigen::Vector3d SimbodyTree::angular_velocity(int body) const {
-  return eigen(system_->matter.getMobilizedBody(system_->bodies[static_cast<std::size_t>(body)])
-                   .getBodyAngularVelocity(system_->state));
+  return eigen(system_->matter.getMobilizedBody(system_->bodies[body]).getBodyAngularVelocity(system_->state));
 }
 
 }  // namespace veridyn::muscle::test

@@ -48,7 +48,7 @@ TEST(AxleEstimate, NeedsTenRowsAParameter) {
   for (estimation::RegressionData* regression : {&data.first, &data.second}) {
     regression->regressors.conservativeResize(rows, Eigen::NoChange);
     regression->regressand.conservativeResize(rows);
-    regression->segment.resize(static_cast<std::size_t>(rows));
+    regression->segment.resize(rows);
   }
   const DriveRegressionResult result = equation_error(std::move(data), p, {});
   EXPECT_TRUE(result.axles.empty());

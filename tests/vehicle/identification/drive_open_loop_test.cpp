@@ -33,7 +33,7 @@ estimation::Estimate estimate_of(const std::vector<std::pair<const char*, double
   const auto n = static_cast<Eigen::Index>(values.size());
   estimate.covariance = Eigen::MatrixXd::Zero(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const auto& [name, value] = values[static_cast<std::size_t>(i)];
+    const auto& [name, value] = values[i];
     estimate.parameters.push_back({.name = name, .value = value, .sigma = sigma * std::abs(value)});
     estimate.covariance(i, i) = std::pow(sigma * value, 2.0);
   }

@@ -39,10 +39,10 @@ DriveSignals rolling_signals(const DriveSensorSet& like) {
 /// Where a search begins, but off it where that is zero, and off steady cornering.
 Eigen::VectorXd theta_of(const DriveParametricModel& model, std::size_t segment = 0) {
   const auto initial = model.initial_conditions(segment);
-  Eigen::VectorXd theta(signed_index(kDriveUnknowns + initial.size()));
-  for (std::size_t i = 0; i < kDriveUnknowns; ++i) theta(signed_index(i)) = model.parameters()[i].start;
+  Eigen::VectorXd theta(kDriveUnknowns + initial.size());
+  for (std::size_t i = 0; i < kDriveUnknowns; ++i) theta(i) = model.parameters()[i].start;
   for (std::size_t i = 0; i < initial.size(); ++i)
-    theta(signed_index(kDriveUnknowns + i)) = initial[i].start + (i < 2 ? 0.0 : 0.004 * static_cast<double>(i));
+    theta(kDriveUnknowns + i) = initial[i].start + (i < 2 ? 0.0 : 0.004 * static_cast<double>(i));
   return theta;
 }
 
@@ -67,7 +67,7 @@ void expect_derivatives(const DriveParametricModel& model, const Eigen::VectorXd
     const estimation::RowMatrix difference = (above - output_of(model, moved)) / (2.0 * h);
     const Eigen::Map<const Eigen::VectorXd> flat(difference.data(), difference.size());
     const double scale = std::max(flat.cwiseAbs().maxCoeff(), 1e-6 / size(i));
-    EXPECT_LT((flat - exact.sensitivity.col(signed_index(column))).cwiseAbs().maxCoeff() / scale, 2e-5)
+    EXPECT_LT((flat - exact.sensitivity.col(column)).cwiseAbs().maxCoeff() / scale, 2e-5)
         << "unknown " << i << ", " << what;
   }
 }
@@ -142,7 +142,7 @@ TEST(DriveParametricModel, WhiteningLeavesTheModelsOwnOutputsWhatIsMeasured) {
     for (const DriveSignal signal : enumerators<DriveSignal, kDriveSignals>()) {
       for (std::size_t j = 0; j < noisy.plain.outputs().size(); ++j) {
         if (noisy.plain.outputs()[j].name != kDriveSignalNames[signal]) continue;
-        for (Eigen::Index k = 0; k < own.rows(); ++k) signals[signal].value[first + at(k)] = own(k, signed_index(j));
+        for (Eigen::Index k = 0; k < own.rows(); ++k) signals[signal].value[first + k] = own(k, j);
       }
     }
     const std::vector<TimeSpan> spans{{4.0, 8.0}};
@@ -168,7 +168,7 @@ TEST(DriveParametricModel, WhiteningIsLinear) {
   int missing = 0;
   for (Eigen::Index k = 0; k < residual.rows(); ++k) {
     DriveWhitening::Filter f;
-    model.filter.at(signals[DriveSignal::kSpeed].value[first + at(k)], f);
+    model.filter.at(signals[DriveSignal::kSpeed].value[first + k], f);
     Eigen::VectorXd expected = residual.row(k).transpose() - f.output * state;
     for (Eigen::Index j = 0; j < expected.size(); ++j) {
       if (std::isnan(expected(j))) {
@@ -209,9 +209,9 @@ TEST(DriveParametricModel, WhiteningTakesTheColourOfTheSteeringsNoiseOut) {
   };
   const Eigen::MatrixXd before = residual(plain), after = residual(white);
   for (Eigen::Index j = 0; j < after.cols(); ++j) {
-    EXPECT_GT(lag1(before.col(j)), 0.6) << plain.outputs()[at(j)].name;
-    EXPECT_LT(std::abs(lag1(after.col(j))), 0.13) << plain.outputs()[at(j)].name;
-    EXPECT_LT(after.col(j).norm(), 0.65 * before.col(j).norm()) << plain.outputs()[at(j)].name;
+    EXPECT_GT(lag1(before.col(j)), 0.6) << plain.outputs()[j].name;
+    EXPECT_LT(std::abs(lag1(after.col(j))), 0.13) << plain.outputs()[j].name;
+    EXPECT_LT(after.col(j).norm(), 0.65 * before.col(j).norm()) << plain.outputs()[j].name;
   }
 }
 

@@ -13,7 +13,7 @@ using testing::mapped;
 
 /// All that a drive without errors of the sensors needs.
 DriveTheta exact_theta(const VehicleParameters<double>& p) {
-  DriveTheta theta{Eigen::VectorXd::Zero(static_cast<Eigen::Index>(kDriveUnknowns))};
+  DriveTheta theta{Eigen::VectorXd::Zero(kDriveUnknowns)};
   theta.value.head(4) << p.C_f, p.C_r, p.I_z, p.a;
   return theta;
 }

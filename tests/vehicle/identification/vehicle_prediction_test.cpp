@@ -29,7 +29,7 @@ TEST(FitDriveBiases, FindsThoseOfTheDayAndLeavesTheVehicleAlone) {
   options.start[DriveUnknown::kCf] = 1.0;
   Progress silent;
   const Eigen::VectorXd theta = fit_drive_biases(signals, spans, p, options, silent);
-  const auto of = [&](DriveUnknown u) { return theta(static_cast<Eigen::Index>(u)); };
+  const auto of = [&](DriveUnknown u) { return theta(u); };
   EXPECT_NEAR(of(DriveUnknown::kSteerBias), 0.004, 1e-5);
   EXPECT_NEAR(of(DriveUnknown::kYawRateBias), -0.006, 1e-5);
   EXPECT_NEAR(of(DriveUnknown::kAccelYBias), 0.15, 1e-4);

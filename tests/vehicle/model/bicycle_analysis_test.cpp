@@ -152,7 +152,7 @@ TEST(BicycleAnalysis, SensitivitiesAreThoseOfDifferences) {
     const auto above = at(j, value + step), below = at(j, value - step);
     for (std::size_t i = 0; i < kBicycleCharacteristics; ++i) {
       const double expected = (above[i] - below[i]) / (2.0 * step);
-      const double got = J(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+      const double got = J(i, j);
       if (!std::isfinite(expected)) {
         EXPECT_TRUE(std::isnan(got));
         continue;

@@ -140,8 +140,7 @@ TEST(FourWheelAnalysis, SmallDrivesFollowTheFrequencyResponse) {
   const auto respond = [&](const std::vector<double>& x) {
     std::complex<double> sum = 0.0;
     for (int k = 800; k < 1000; ++k) {
-      sum += x[static_cast<std::size_t>(k)] *
-             std::polar(1.0, -2.0 * std::numbers::pi * f * t.time[static_cast<std::size_t>(k)]);
+      sum += x[k] * std::polar(1.0, -2.0 * std::numbers::pi * f * t.time[k]);
     }
     return sum / 100.0 * std::complex<double>(0.0, 1.0) / amplitude;  // the input is a sine
   };

@@ -71,11 +71,10 @@ Scalar energy(const VehicleParameters<double>& p, const FourWheelState<Scalar>& 
     const double above = p.cg_height - suspension(options, front).roll_centre;
     const Scalar corner = s(kHeave) + y * s(kRoll) - x * s(kPitch) +
                           0.5 * (above * s(kRoll) * s(kRoll) + p.cg_height * s(kPitch) * s(kPitch));
-    stretch[static_cast<std::size_t>(i)] = s(kWheelHeight + i) - corner;
+    stretch[i] = s(kWheelHeight + i) - corner;
   }
   for (Eigen::Index i = 0; i < 4; ++i) {
     const bool front = i < 2;
-    const auto w = static_cast<std::size_t>(i);
     const double load = p.mass * g * (front ? p.b : p.a) / (2.0 * (p.a + p.b));
     const double K = front ? p.K_sf : p.K_sr, K_t = front ? p.K_tf : p.K_tr;
     const double squeezed = (load - p.unsprung_mass * g) / K;  // of the spring at rest
@@ -83,15 +82,15 @@ Scalar energy(const VehicleParameters<double>& p, const FourWheelState<Scalar>& 
          p.unsprung_mass * g * s(kWheelHeight + i);
     const SpringCurve& curve = suspension(options, front).spring;
     if (curve.empty()) {
-      e += 0.5 * K * (squeezed + stretch[w]) * (squeezed + stretch[w]);
+      e += 0.5 * K * (squeezed + stretch[i]) * (squeezed + stretch[i]);
     } else {
-      e += (load - p.unsprung_mass * g) * stretch[w] + stored(curve, stretch[w]);
+      e += (load - p.unsprung_mass * g) * stretch[i] + stored(curve, stretch[i]);
     }
     if (i % 2 == 0) {
-      const Scalar twist = stretch[w] - stretch[w + 1];
+      const Scalar twist = stretch[i] - stretch[i + 1];
       e += 0.5 * (front ? p.K_bf : p.K_br) * twist * twist;
     }
-    const Scalar flat = load / K_t + road[w] - s(kWheelHeight + i);
+    const Scalar flat = load / K_t + road[i] - s(kWheelHeight + i);
     if (flat > 0.0) e += 0.5 * K_t * flat * flat;
   }
   if (options.longitudinal) {
@@ -110,31 +109,29 @@ double power(const LinearCar<double>& car, const Moment& m, const FourWheelRates
   const double ahead = 2.0 * p.unsprung_mass * (p.b - p.a) / (p.mass - 4.0 * p.unsprung_mass);
   const Eigen::Vector3d velocity(s(kU), s(kV), 0.0), spin(s(kRollRate), s(kPitchRate), s(kR));
   for (std::size_t i = 0; i < kWheels; ++i) {
-    const auto w = static_cast<Eigen::Index>(i);
     const double x = car.wheel_x()(signed_index(i)), y = car.wheel_y()(signed_index(i));
     const AxleSuspension& axle = suspension(car.options(), is_front(i));
     const double above = p.cg_height - axle.roll_centre;
-    const double stretching = s(kWheelHeightRate + w) - s(kHeaveRate) - y * s(kRollRate) + (x - ahead) * s(kPitchRate) -
+    const double stretching = s(kWheelHeightRate + i) - s(kHeaveRate) - y * s(kRollRate) + (x - ahead) * s(kPitchRate) -
                               above * s(kRoll) * s(kRollRate) - p.cg_height * s(kPitch) * s(kPitchRate);
     Eigen::Vector3d contact = velocity + spin.cross(Eigen::Vector3d(x, y, -p.cg_height));
     contact.y() += (is_left(i) ? 2.0 : -2.0) * axle.roll_centre / (is_front(i) ? p.track_f : p.track_r) * stretching;
-    EXPECT_NEAR(rates.contact_x(signed_index(i)), contact.x(), 1e-12);
-    EXPECT_NEAR(rates.contact_y(signed_index(i)), contact.y(), 1e-12);
+    EXPECT_NEAR(rates.contact_x(i), contact.x(), 1e-12);
+    EXPECT_NEAR(rates.contact_y(i), contact.y(), 1e-12);
     const Eigen::Vector3d force =
-        Eigen::AngleAxisd((is_front(i) ? m.steer : 0.0) + rates.suspension_steer(w), Eigen::Vector3d::UnitZ()) *
-        Eigen::Vector3d(rates.Fx(signed_index(i)), rates.Fy(signed_index(i)), 0.0);
+        Eigen::AngleAxisd((is_front(i) ? m.steer : 0.0) + rates.suspension_steer(i), Eigen::Vector3d::UnitZ()) *
+        Eigen::Vector3d(rates.Fx(i), rates.Fy(i), 0.0);
     const AerodynamicLift& air = car.options().lift;
     const double lifted = 0.25 * air.air_density * (is_front(i) ? air.area_f : air.area_r) * s(kU) * s(kU);
-    sum += rates.aligning_moment(w) * s(kR) + lifted * (s(kHeaveRate) - (x - ahead) * s(kPitchRate));
-    sum += force.dot(contact) + rates.Fz(signed_index(i)) * road_rate[i];
+    sum += rates.aligning_moment(i) * s(kR) + lifted * (s(kHeaveRate) - (x - ahead) * s(kPitchRate));
+    sum += force.dot(contact) + rates.Fz(i) * road_rate[i];
     sum -= (is_front(i) ? p.C_sf : p.C_sr) * stretching * stretching;
     if (const auto& l = car.options().longitudinal) {
       const double drive = is_front(i) ? l->front_drive_share : 1.0 - l->front_drive_share;
       const double brake = is_front(i) ? l->front_brake_share : 1.0 - l->front_brake_share;
-      const double friction =
-          0.5 * brake * m.brake + l->rolling_resistance * rates.Fz(signed_index(i)) * l->wheel_radius;
-      sum += (0.5 * drive * m.drive - l->wheel_radius * rates.Fx(signed_index(i))) * s(kWheelSpin + w) -
-             friction * std::abs(s(kWheelSpin + w));
+      const double friction = 0.5 * brake * m.brake + l->rolling_resistance * rates.Fz(i) * l->wheel_radius;
+      sum += (0.5 * drive * m.drive - l->wheel_radius * rates.Fx(i)) * s(kWheelSpin + i) -
+             friction * std::abs(s(kWheelSpin + i));
     }
   }
   if (const auto& l = car.options().longitudinal) {
@@ -169,7 +166,7 @@ TEST(FourWheelModel, GainsEnergyOnlyFromForcesAtMovingPoints) {
         road_rate[i] = any(generator);
         road[i].a = m.road[i];
         road[i].v(0) = road_rate[i];
-        off_the_ground += rates.Fz(signed_index(i)) == 0.0 ? 1 : 0;
+        off_the_ground += rates.Fz(i) == 0.0 ? 1 : 0;
       }
       const double expected = power(car, m, rates, road_rate);
       // The rate of a spring by table is a difference of what it stores.

@@ -37,7 +37,7 @@ TEST(FourWheelModel, StandsStillInItsSpringsOnItsStaticLoads) {
   const double weight = p.mass * 9.80665;
   EXPECT_NEAR(rates.Fz(0) + rates.Fz(1) + rates.Fz(2) + rates.Fz(3), weight, 1e-9);
   EXPECT_NEAR(p.a * (rates.Fz(0) + rates.Fz(1)), p.b * (rates.Fz(2) + rates.Fz(3)), 1e-9);
-  for (std::size_t i = 0; i < kWheels; ++i) EXPECT_EQ(rates.Fz(signed_index(i)), static_loads(p, 9.80665)[i]);
+  for (std::size_t i = 0; i < kWheels; ++i) EXPECT_EQ(rates.Fz(i), static_loads(p, 9.80665)[i]);
 }
 
 // Newton and Euler for the whole vehicle from the forces and their places alone.
@@ -56,7 +56,7 @@ TEST(FourWheelModel, ChangesMomentumByItsForces) {
       }
       for (std::size_t i = 0; i < kWheels; ++i) {
         const double angle = is_front(i) ? m.steer : 0.0;
-        const Eigen::Vector3d in_wheel(rates.Fx(signed_index(i)), rates.Fy(signed_index(i)), rates.Fz(signed_index(i)));
+        const Eigen::Vector3d in_wheel(rates.Fx(i), rates.Fy(i), rates.Fz(i));
         const Eigen::Vector3d f = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()) * in_wheel;
         force += f;
         moment +=
@@ -181,7 +181,7 @@ TEST(FourWheelModel, HasTheDerivativesOfItsDifferences) {
   using Jet = ceres::Jet<double, kParameters>;
   const VehicleParameters<double> p = uneven_car();
   VehicleParameters<Jet> with_parts = p.cast<Jet>();
-  for (std::size_t i = 0; i < kParameters; ++i) field_of(with_parts, i).v(static_cast<Eigen::Index>(i)) = 1.0;
+  for (std::size_t i = 0; i < kParameters; ++i) field_of(with_parts, i).v(i) = 1.0;
   FourWheelOptions options = every_option();
   options.longitudinal.emplace();
   const auto car = trailing_car(with_parts, options);
@@ -200,7 +200,7 @@ TEST(FourWheelModel, HasTheDerivativesOfItsDifferences) {
         (rates_at(trailing_car(more, options), m).derivative - rates_at(trailing_car(less, options), m).derivative) /
         (2.0 * step);
     for (Eigen::Index k = 0; k < kFourWheelStates; ++k) {
-      EXPECT_NEAR(rates.derivative(k).v(static_cast<Eigen::Index>(i)), slope(k), 1e-6 * (1e-3 + std::abs(slope(k))))
+      EXPECT_NEAR(rates.derivative(k).v(i), slope(k), 1e-6 * (1e-3 + std::abs(slope(k))))
           << kVehicleFields[i].name << " to state " << k;
     }
   }

@@ -158,7 +158,7 @@ TEST(SteppedDrive, NeverMakesEnergyAtStandstill) {
       double sum = 0.5 * p.mass * (std::pow(s.vehicle(kU), 2) + std::pow(s.vehicle(kV), 2)) +
                    0.5 * p.I_z * std::pow(s.vehicle(kR), 2);
       for (Eigen::Index i = 0; i < 4; ++i) {
-        const LinearTyre<double>& tyre = car.tyres()[static_cast<std::size_t>(i)];
+        const LinearTyre<double>& tyre = car.tyres()[i];
         sum += 0.5 / sigma *
                (tyre.slip_stiffness * std::pow(s.deflection_x[i], 2) + tyre.stiffness * std::pow(s.deflection_y[i], 2));
       }
@@ -300,7 +300,7 @@ TEST(SteppedDrive, GivesTheSpecificForceAtAnyPlace) {
   }
   double worst = 0.0;
   for (std::size_t k = 500; k + 10 < path.size(); ++k) {
-    const auto at = [&](int by) { return path[static_cast<std::size_t>(static_cast<int>(k) + by)].at; };
+    const auto at = [&](int by) { return path[static_cast<int>(k) + by].at; };
     constexpr int kWide = 3;  // of the sixth order: error and rounding both below 1e-7
     const double h = kWide * kDriveStep;
     const Eigen::Vector3d a = ((at(-3 * kWide) + at(3 * kWide)) / 90.0 - 0.15 * (at(-2 * kWide) + at(2 * kWide)) +

@@ -6,7 +6,6 @@
 
 #include "tests/vehicle/simulation/drives.hpp"
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/index.hpp"
 
 // Roll and lift-off of wheels over whole drives.
 
@@ -71,7 +70,7 @@ TEST(FourWheelSimulation, FallsIntoAHoleAndLandsAgain) {
   }
   // It comes to rest as it was; while one wheel is off the others carry the car.
   for (std::size_t i = 0; i < kWheels; ++i) {
-    EXPECT_NEAR(out.Fz[i].back(), linear_car(car_with_bars()).rest_loads()[signed_index(i)], 0.5);
+    EXPECT_NEAR(out.Fz[i].back(), linear_car(car_with_bars()).rest_loads()[i], 0.5);
     EXPECT_NEAR(out.wheel_height[i].back(), 0.0, 1e-5);
   }
 }

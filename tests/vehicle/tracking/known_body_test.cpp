@@ -23,8 +23,7 @@ estimation::Estimate estimate_of(const std::vector<std::pair<std::string, double
                               .status = estimation::ParameterStatus::kIdentified});
   const auto n = static_cast<Eigen::Index>(values.size());
   out.covariance = Eigen::MatrixXd::Zero(n, n);
-  for (Eigen::Index i = 0; i < n; ++i)
-    out.covariance(i, i) = std::pow(0.1 * values[static_cast<std::size_t>(i)].second, 2);
+  for (Eigen::Index i = 0; i < n; ++i) out.covariance(i, i) = std::pow(0.1 * values[i].second, 2);
   return out;
 }
 

@@ -56,8 +56,7 @@ TEST(AligningMoments, OfFourTyresAreThoseOfEachOnTheGround) {
   const WheelArray<double> moments = aligning_moments(tyres, load, ratio, angle, 0.01);
   EXPECT_EQ(moments[2], 0.0);
   for (const Eigen::Index i : {0, 1, 3}) {
-    const auto w = static_cast<std::size_t>(i);
-    EXPECT_EQ(moments[i], aligning_moment(tyres[w], load[i], ratio[i], angle[i], 0.01)) << i;
+    EXPECT_EQ(moments[i], aligning_moment(tyres[i], load[i], ratio[i], angle[i], 0.01)) << i;
   }
 }
 

@@ -64,7 +64,7 @@ TEST(FourMagicFormulaTyres, AreTheTyresOneByOne) {
         const double camber = k % 3 == 0 ? 0.0 : between(-0.4, 0.4);
         four.forces(load, ratio, angle, camber, Fx, Fy);
         for (Eigen::Index w = 0; w < 4; ++w) {
-          const TyreForces<double> one = tyres[static_cast<std::size_t>(w)].forces(load[w], ratio[w], angle[w], camber);
+          const TyreForces<double> one = tyres[w].forces(load[w], ratio[w], angle[w], camber);
           const double tolerance = 2e-13 * std::max(load[w], 100.0);
           ASSERT_NEAR(Fx[w], one.Fx, tolerance) << "set " << set << " case " << k << " wheel " << w;
           ASSERT_NEAR(Fy[w], one.Fy, tolerance) << "set " << set << " case " << k << " wheel " << w;

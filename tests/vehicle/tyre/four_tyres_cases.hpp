@@ -37,8 +37,7 @@ void expect_tyres_one_by_one(const PerWheel<Tyre>& tyres, std::mt19937_64& rando
     WheelArray<double> Fx, Fy;
     four.forces(at.load, at.ratio, at.angle, 0.02, Fx, Fy);
     for (Eigen::Index w = 0; w < 4; ++w) {
-      const TyreForces<double> one =
-          tyres[static_cast<std::size_t>(w)].forces(at.load[w], at.ratio[w], at.angle[w], 0.02);
+      const TyreForces<double> one = tyres[w].forces(at.load[w], at.ratio[w], at.angle[w], 0.02);
       const double tolerance = per_load * std::max(at.load[w], 0.0);
       ASSERT_NEAR(Fx[w], one.Fx, relative * std::abs(one.Fx) + tolerance) << "case " << k << " wheel " << w;
       ASSERT_NEAR(Fy[w], one.Fy, relative * std::abs(one.Fy) + tolerance) << "case " << k << " wheel " << w;

@@ -52,7 +52,7 @@ Subject with_changed(const Subject& subject, BodyConstant constant, double chang
 
 Eigen::MatrixXd body_sensitivity(const Subject& subject, Eigen::Index parameters,
                                  const std::function<Eigen::VectorXd(const Subject&)>& estimate) {
-  Eigen::MatrixXd G = Eigen::MatrixXd::Zero(parameters, static_cast<Eigen::Index>(kBodyConstants));
+  Eigen::MatrixXd G = Eigen::MatrixXd::Zero(parameters, kBodyConstants);
   const EnumArray<BodyConstant, double, kBodyConstants> sigma = body_sigma(subject);
   for (std::size_t k = 0; k < kBodyConstants; ++k) {
     if (!(sigma[k] > 0.0)) continue;
@@ -62,7 +62,7 @@ Eigen::MatrixXd body_sensitivity(const Subject& subject, Eigen::Index parameters
     const Eigen::VectorXd high = estimate(with_changed(subject, constant, kStep * sigma[k]));
     const Eigen::VectorXd low = estimate(with_changed(subject, constant, -kStep * sigma[k]));
     if (high.size() != parameters || low.size() != parameters) continue;
-    G.col(static_cast<Eigen::Index>(k)) = (high - low) / (2.0 * kStep);
+    G.col(k) = (high - low) / (2.0 * kStep);
   }
   return G;
 }
@@ -72,8 +72,7 @@ void widen(estimation::RegressionEstimate& estimate, const Eigen::MatrixXd& sens
   estimate.covariance += sensitivity * sensitivity.transpose();
   for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
     auto& p = estimate.parameters[i];
-    const auto at = static_cast<Eigen::Index>(i);
-    const double shared = sensitivity.row(at).squaredNorm();
+    const double shared = sensitivity.row(i).squaredNorm();
     if (!(shared > 0.0) || !(p.sigma > 0.0)) continue;
     // The noise part has its degrees of freedom, the shared part is taken as known: the interval's factor stays the
     // noise's, which is the larger of the two.
@@ -96,7 +95,7 @@ std::string dominant_constant(const estimation::RegressionEstimate& widened, con
     for (std::size_t i = 0; i < widened.parameters.size(); ++i) {
       const auto& p = widened.parameters[i];
       const bool counts = p.status == ParameterStatus::kIdentified || p.status == ParameterStatus::kInsignificant;
-      const double part = sensitivity(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
+      const double part = sensitivity(i, k);
       if (counts && part * part > 0.5 * p.sigma * p.sigma)
         return fmt::format("{} ({:.2g} %)", kBodyConstantNames[k], 100.0 * sigma[k] / std::abs(body.value[k]));
     }

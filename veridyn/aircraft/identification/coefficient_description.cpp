@@ -4,7 +4,6 @@
 
 #include "veridyn/aircraft/identification/coefficient_rows.hpp"
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/index.hpp"
 
 namespace veridyn::aircraft::internal {
 namespace {

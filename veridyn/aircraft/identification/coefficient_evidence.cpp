@@ -192,7 +192,7 @@ Evidence scatter_row(const std::string& name, const estimation::GroupScatter& sc
   double largest = 0.0;
   for (std::size_t j = 0; j < chosen.parameters.size(); ++j) {
     const estimation::Parameter& p = chosen.parameters[j];
-    const double share = scatter.between_sigma(static_cast<Eigen::Index>(j)) / std::abs(p.value);
+    const double share = scatter.between_sigma(j) / std::abs(p.value);
     if (p.status != estimation::ParameterStatus::kIdentified || !(share > largest)) continue;
     largest = share;
     most = fmt::format(", most in {} (standard deviation between flights {:.2g} %)", p.name, 100.0 * share);

@@ -8,7 +8,6 @@
 #include "veridyn/aircraft/identification/coefficient_description.hpp"
 #include "veridyn/aircraft/identification/error_variance.hpp"
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/judgement/agreement.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -51,9 +50,8 @@ estimation::Agreement agreement_of(const RegressionEstimate& a, const Regression
 std::optional<Eigen::VectorXd> start_values(const CoefficientModel& model, const Subject& subject) {
   const CoefficientModel* given = subject.model.find(model.coefficient);
   if (given == nullptr) return std::nullopt;
-  Eigen::VectorXd values(signed_index(model.size()));
-  for (std::size_t i = 0; i < model.size(); ++i)
-    values(static_cast<Eigen::Index>(i)) = given->value_of(model.terms[i].expression).value_or(kNaN);
+  Eigen::VectorXd values(model.size());
+  for (std::size_t i = 0; i < model.size(); ++i) values(i) = given->value_of(model.terms[i].expression).value_or(kNaN);
   return values.allFinite() ? std::optional(values) : std::nullopt;
 }
 
@@ -140,8 +138,7 @@ CoefficientFit fit_coefficient(CoefficientModel model, const FlightView& view) {
     fit.of_rows = chosen->theta;
     // The errors of the regressors explain all: then the residual is compared with theirs and the sensors' of z.
     if (!(fit.error_ratio > 0.0)) fit.error_ratio = residual_ratio(by_sensors, chosen->theta);
-    for (std::size_t i = 0; i < fit.model.size(); ++i)
-      fit.model.values[i] = chosen->theta(static_cast<Eigen::Index>(i));
+    for (std::size_t i = 0; i < fit.model.size(); ++i) fit.model.values[i] = chosen->theta(i);
     fit.unmodelled_share = unmodelled_share(fit_on(data, chosen->theta).r2, fit.error_ratio);
   }
   return fit;
@@ -160,8 +157,7 @@ FlightFits fit_each_flight(CoefficientFit& fit, const FlightView& view) {
   each.scatter = estimation::group_scatter(estimates);
   if (!fit.chosen || !each.scatter.found()) return each;
   estimation::take_mean(*fit.chosen, each.scatter, view.options.significance);
-  for (std::size_t i = 0; i < fit.model.size(); ++i)
-    fit.model.values[i] = each.scatter.mean(static_cast<Eigen::Index>(i));
+  for (std::size_t i = 0; i < fit.model.size(); ++i) fit.model.values[i] = each.scatter.mean(i);
   fit.comparison = worst_of(each.fits, view.flights, std::move(fit.comparison));
   fit.error_ratio = over_rows(each.fits, &CoefficientFit::error_ratio);
   fit.unmodelled_share = over_rows(each.fits, &CoefficientFit::unmodelled_share);

@@ -7,7 +7,6 @@
 #include "veridyn/aircraft/identification/identification.hpp"
 #include "veridyn/aircraft/model/estimated_subject.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/index.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -32,7 +31,7 @@ CoefficientResult evaluate_coefficient(const CoefficientModel& model, std::span<
     result.reason = fmt::format("{} cannot be judged: {}", name, segments_text(flights, result.axis));
     return result;
   }
-  const Eigen::Map<const Eigen::VectorXd> values(model.values.data(), signed_index(model.size()));
+  const Eigen::Map<const Eigen::VectorXd> values(model.values.data(), model.size());
   result.holdout_fit = internal::fit_on(rows.data, values);
   result.flight_fits = internal::fits_by_flight(rows, flights, values);
   const double explained = 100.0 * std::max(0.0, result.holdout_fit.r2);

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "veridyn/aircraft/identification/identification.hpp"
-#include "veridyn/core/index.hpp"
 
 namespace veridyn::aircraft {
 namespace {

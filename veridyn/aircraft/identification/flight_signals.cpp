@@ -152,7 +152,7 @@ std::array<GridSignal, 3> force_at_centre_of_gravity(const InertialSignals& at_s
     };
     const Eigen::Vector3d w = at(at_sensor.rate), dw = at(at_sensor.rate_derivative);
     const Eigen::Vector3d lever = dw.cross(r) + w.cross(w.cross(r));
-    for (std::size_t i = 0; i < 3; ++i) force[i].value[k] -= lever(static_cast<Eigen::Index>(i));
+    for (std::size_t i = 0; i < 3; ++i) force[i].value[k] -= lever(i);
   }
   return force;
 }
@@ -371,7 +371,7 @@ void velocity_through_mean_air(const Recording& smoothed, FlightSignals& flight)
   for (std::size_t k = 0; k < flight.grid.count; ++k) {
     const Eigen::Vector3d ned = numerics::R_body_from_ned(flight.roll[k], flight.pitch[k], flight.yaw[k]).transpose() *
                                 Eigen::Vector3d(v[0][k], v[1][k], v[2][k]);
-    for (std::size_t i = 0; i < 3; ++i) v[i][k] = ned(static_cast<Eigen::Index>(i));
+    for (std::size_t i = 0; i < 3; ++i) v[i][k] = ned(i);
   }
   flight.vel_north = std::move(v[0]);
   flight.vel_east = std::move(v[1]);

@@ -14,7 +14,6 @@
 #include "veridyn/aircraft/identification/flight_rows.hpp"
 #include "veridyn/aircraft/identification/sensor_doubt.hpp"
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/judgement/agreement.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -58,7 +57,7 @@ ChosenTerms choose_terms(const CoefficientModel& given, StructureMethod method, 
   estimation::StructureSearch search = estimation::search_structure(data, options);
   if (search.selected.empty()) return {given, std::move(search)};
   CoefficientModel chosen{c, {}, {}};
-  for (const Eigen::Index j : search.selected) chosen.terms.push_back(all.terms[at(j)]);
+  for (const Eigen::Index j : search.selected) chosen.terms.push_back(all.terms[j]);
   chosen.values.assign(chosen.terms.size(), kNaN);
   return {std::move(chosen), std::move(search)};
 }

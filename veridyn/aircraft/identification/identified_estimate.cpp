@@ -79,7 +79,7 @@ estimation::Estimate make_estimate(const Subject& subject, std::span<const Coeff
     }
     at += chosen.theta.size();
     for (Eigen::Index i = 0; i < result.air_data_doubt.size(); ++i)
-      estimate.fit[chosen.parameters[static_cast<std::size_t>(i)].name + ".air_data_doubt"] = result.air_data_doubt(i);
+      estimate.fit[chosen.parameters[i].name + ".air_data_doubt"] = result.air_data_doubt(i);
     estimate.fit[name + ".r2"] = result.identification_fit.r2;
     estimate.fit[name + ".residual_sd"] = chosen.residual_sd;
     estimate.fit[name + ".samples"] = static_cast<double>(chosen.rows);

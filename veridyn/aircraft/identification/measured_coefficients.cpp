@@ -35,7 +35,7 @@ CoefficientRow coefficient_row(const CoefficientModel& model, const FlightSample
   const Jet z = select(regressed_coefficients(s, subject, rho), model.coefficient);
   CoefficientRow result;
   result.row.resize(n + 1);
-  result.jacobian.resize(n + 1, static_cast<Eigen::Index>(kFlightSignals));
+  result.jacobian.resize(n + 1, kFlightSignals);
   for (Eigen::Index i = 0; i < n; ++i) {
     result.row(i) = x(i).a;
     result.jacobian.row(i) = x(i).v.transpose();

@@ -141,7 +141,7 @@ Eigen::MatrixXd covariance_of(std::span<const CoefficientModel> models, const es
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
   for (Index i = 0; i < n; ++i) {
     for (Index j = 0; j < n; ++j) {
-      const Index a = place[at(i)], b = place[at(j)];
+      const Index a = place[i], b = place[j];
       if (a < 0 || b < 0 || a >= estimate.covariance.rows() || b >= estimate.covariance.rows()) continue;
       const double v = estimate.covariance(a, b);
       if (std::isfinite(v)) covariance(i, j) = v;

@@ -155,11 +155,10 @@ MethodOutcome by_bootstrap(const CoefficientResult& r, const IdentifyOptions& op
   MethodOutcome outcome;
   if (b.usable()) {
     for (std::size_t i = 0; i < chosen.parameters.size(); ++i) {
-      const auto at = static_cast<Eigen::Index>(i);
       Parameter p = chosen.parameters[i];
-      p.sigma = b.sigma(at);
-      p.low95 = b.low95(at);
-      p.high95 = b.high95(at);
+      p.sigma = b.sigma(i);
+      p.low95 = b.low95(i);
+      p.high95 = b.high95(i);
       outcome.parameters.push_back(compared(r, method, p));
     }
   }

@@ -45,7 +45,7 @@ std::array<std::vector<double>, 3> air_acceleration(const FlightSignals& s) {
     const Eigen::Matrix3d R_BN = numerics::R_body_from_ned(s.roll[k], s.pitch[k], s.yaw[k]);
     const Eigen::Vector3d air =
         Eigen::Vector3d(s.vel_north[k], s.vel_east[k], s.vel_down[k]) - R_BN.transpose() * relative;
-    for (std::size_t i = 0; i < 3; ++i) wind[i][k] = air(static_cast<Eigen::Index>(i));
+    for (std::size_t i = 0; i < 3; ++i) wind[i][k] = air(i);
   }
   const double rate = s.grid.rate_Hz(), pass = std::min(kGustPass_Hz, 0.2 * rate);
   const numerics::FirKernel kernel =
@@ -54,7 +54,7 @@ std::array<std::vector<double>, 3> air_acceleration(const FlightSignals& s) {
   for (std::size_t k = 0; k < n; ++k) {
     const Eigen::Matrix3d R_BN = numerics::R_body_from_ned(s.roll[k], s.pitch[k], s.yaw[k]);
     const Eigen::Vector3d body = R_BN * Eigen::Vector3d(wind[0][k], wind[1][k], wind[2][k]);
-    for (std::size_t i = 0; i < 3; ++i) wind[i][k] = body(static_cast<Eigen::Index>(i));
+    for (std::size_t i = 0; i < 3; ++i) wind[i][k] = body(i);
   }
   return wind;
 }
@@ -221,7 +221,7 @@ TimeSpan OutputErrorModel::segment_span(std::size_t segment) const {
 }
 
 Eigen::Index OutputErrorModel::samples_before_divergence(std::size_t segment, const Eigen::VectorXd& theta) const {
-  estimation::RowMatrix output = estimation::RowMatrix::Constant(samples(segment), signed_index(outputs_.size()), kNaN);
+  estimation::RowMatrix output = estimation::RowMatrix::Constant(samples(segment), outputs_.size(), kNaN);
   (void)simulate(segment, theta, output);
   Eigen::Index flown = 0;
   while (flown < output.rows() && output.row(flown).allFinite()) ++flown;
@@ -238,7 +238,7 @@ void OutputErrorModel::shorten(std::size_t segment, Eigen::Index samples) {
 std::vector<estimation::RowMatrix> OutputErrorModel::measured() const {
   std::vector<estimation::RowMatrix> tables;
   for (const Segment& s : segments_) {
-    estimation::RowMatrix z(s.samples, signed_index(outputs_.size()));
+    estimation::RowMatrix z(s.samples, outputs_.size());
     for (Eigen::Index k = 0; k < s.samples; ++k) {
       const GridInputs& d = inputs_[s.begin + 2 * static_cast<std::size_t>(k)];
       Eigen::Index column = 0;

@@ -147,7 +147,7 @@ class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel, 8, e
       if (!simulated_[i]) x[i] = Scalar(inputs.state[i]);
   }
   [[nodiscard]] const CoefficientModel* modelled(Coefficient c) const {
-    return which_[c] < 0 ? nullptr : &coefficients_[at(which_[c])];
+    return which_[c] < 0 ? nullptr : &coefficients_[which_[c]];
   }
 
   Subject subject_;
@@ -194,7 +194,7 @@ OutputErrorModel::Rates<Scalar> OutputErrorModel::rates(State<Scalar> x, const G
     const CoefficientModel* model = modelled(c);
     if (model == nullptr) return Scalar(select(inputs.measured, c));
     const Scalar sum = model->linear(v, parameters.subspan(offset_[c], model->size()));
-    return constant_[c] < 0 ? sum : sum + parameters[parameters_.size() + at(constant_[c])];
+    return constant_[c] < 0 ? sum : sum + parameters[parameters_.size() + constant_[c]];
   };
   Scalar CL = value(Coefficient::kCL), CD = value(Coefficient::kCD);
   const Scalar CY = value(Coefficient::kCY);

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::aircraft {
@@ -31,11 +30,11 @@ Eigen::MatrixXd doubt_sensitivity(const FlightSignals& signals, std::span<const 
                                   const std::function<Eigen::VectorXd(const FlightSignals&)>& estimate) {
   // A tenth of a deviation: the tangent, also where the deviation is large.
   constexpr double kStep = 0.1;
-  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(theta.size(), signed_index(doubts.size()));
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(theta.size(), doubts.size());
   for (std::size_t i = 0; i < doubts.size(); ++i) {
     if (!signals[doubts[i].signal].available()) continue;
     const Eigen::VectorXd changed = estimate(with_changed(signals, doubts[i], kStep));
-    if (changed.size() == theta.size()) columns.col(signed_index(i)) = (changed - theta) / kStep;
+    if (changed.size() == theta.size()) columns.col(i) = (changed - theta) / kStep;
   }
   return columns;
 }
@@ -53,7 +52,7 @@ estimation::Evidence doubt_row(const std::string& coefficient, std::span<const P
   double largest = 0.0;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const Parameter& p = parameters[i];
-    const double d = doubt(static_cast<Eigen::Index>(i));
+    const double d = doubt(i);
     if (!has_interval(p) || !(p.sigma > 0.0)) continue;
     largest = std::max(largest, d / p.sigma);
     if (d > kLimit * p.sigma) named.push_back(fmt::format("{} by {:.2g}", p.name, d));
@@ -79,7 +78,7 @@ estimation::Evidence doubt_row(const std::string& coefficient, std::span<const P
 std::vector<Parameter> weak_by_doubt(std::vector<Parameter> parameters, const Eigen::VectorXd& doubt) {
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     Parameter& p = parameters[i];
-    const double half = numerics::kNormal95 * std::hypot(p.sigma, doubt(static_cast<Eigen::Index>(i)));
+    const double half = numerics::kNormal95 * std::hypot(p.sigma, doubt(i));
     if (p.status == ParameterStatus::kIdentified && half > estimation::kWeakShare * std::abs(p.value))
       p.status = ParameterStatus::kWeak;
   }

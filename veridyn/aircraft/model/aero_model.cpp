@@ -8,7 +8,6 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/core/text.hpp"
 #include "veridyn/core/units.hpp"

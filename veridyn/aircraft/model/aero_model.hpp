@@ -226,8 +226,8 @@ Scalar Factor::evaluate(const AeroVariables<Scalar>& v) const {
 
 template <typename Scalar>
 Eigen::Matrix<Scalar, Eigen::Dynamic, 1> CoefficientModel::regressors(const AeroVariables<Scalar>& v) const {
-  Eigen::Matrix<Scalar, Eigen::Dynamic, 1> row(signed_index(terms.size()));
-  for (std::size_t i = 0; i < terms.size(); ++i) row(static_cast<Eigen::Index>(i)) = terms[i].evaluate(v);
+  Eigen::Matrix<Scalar, Eigen::Dynamic, 1> row(terms.size());
+  for (std::size_t i = 0; i < terms.size(); ++i) row(i) = terms[i].evaluate(v);
   return row;
 }
 

@@ -77,7 +77,7 @@ std::vector<std::complex<double>> sorted_eigenvalues(const Eigen::Matrix4d& A) {
 Eigen::Matrix4d block(const Eigen::Matrix<double, 8, 8>& A, const std::array<int, 4>& index) {
   Eigen::Matrix4d out;
   for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j) out(i, j) = A(index[static_cast<std::size_t>(i)], index[static_cast<std::size_t>(j)]);
+    for (int j = 0; j < 4; ++j) out(i, j) = A(index[i], index[j]);
   return out;
 }
 

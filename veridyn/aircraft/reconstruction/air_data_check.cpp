@@ -108,8 +108,8 @@ AirDataErrors check_air_data_errors(const RunSetting& base, const SolveTask& tas
   const auto m = signed_index(result.index.size());
   result.covariance = Eigen::MatrixXd::Zero(m, m);
   for (Eigen::Index i = 0; i < m; ++i) {
-    const int error = result.index[at(i)];
-    const double prior = air_data_error_priors()[at(error)];
+    const int error = result.index[i];
+    const double prior = air_data_error_priors()[error];
     const std::optional<Found> found = found_of(error, air, slope, task);
     const double precision = 1.0 / (prior * prior) + (found ? 1.0 / (found->error.sigma * found->error.sigma) : 0.0);
     result.covariance(i, i) = 1.0 / precision;

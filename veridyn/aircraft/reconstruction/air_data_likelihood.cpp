@@ -29,9 +29,7 @@ class AirDataLikelihood {
   [[nodiscard]] Eigen::Index errors() const { return static_cast<Eigen::Index>(index_.size()); }
   [[nodiscard]] Eigen::Index size() const { return errors() + 3; }
   [[nodiscard]] const std::vector<int>& index() const { return index_; }
-  [[nodiscard]] double prior(Eigen::Index i) const {
-    return air_data_error_priors()[static_cast<std::size_t>(index_[static_cast<std::size_t>(i)])];
-  }
+  [[nodiscard]] double prior(Eigen::Index i) const { return air_data_error_priors()[index_[i]]; }
 
   [[nodiscard]] DrydenSettings spectrum(const Eigen::VectorXd& theta) const {
     DrydenSettings spectrum = base_->motion.spectrum;
@@ -65,8 +63,7 @@ class AirDataLikelihood {
       settings[k].air_error.setZero();
       Eigen::VectorXd at = theta;
       if (k > 0) at(static_cast<Eigen::Index>(k) - 1) += kStep;
-      for (Eigen::Index i = 0; i < errors(); ++i)
-        settings[k].air_error(index_[static_cast<std::size_t>(i)]) = at(i) * prior(i);
+      for (Eigen::Index i = 0; i < errors(); ++i) settings[k].air_error(index_[i]) = at(i) * prior(i);
       settings[k].motion.spectrum = spectrum(at);
     }
     return settings;
@@ -149,7 +146,7 @@ AirDataErrors estimate_air_data_errors(const FilterEngine& engine, const RunSett
   Eigen::VectorXd scale(errors);
   for (Eigen::Index i = 0; i < errors; ++i) {
     scale(i) = evaluate.prior(i);
-    result.value(result.index[static_cast<std::size_t>(i)]) = theta(i) * scale(i);
+    result.value(result.index[i]) = theta(i) * scale(i);
   }
   result.covariance = scale.asDiagonal() * now.information.inverse().topLeftCorner(errors, errors) * scale.asDiagonal();
   result.spectrum = evaluate.spectrum(theta);

@@ -23,7 +23,7 @@ struct AirDataErrors {
   [[nodiscard]] Eigen::Matrix<double, 5, 1> correction() const {
     Eigen::Matrix<double, 5, 1> result = Eigen::Matrix<double, 5, 1>::Zero();
     for (const Eigen::Index i : applied) {
-      const int at = index[static_cast<std::size_t>(i)];
+      const int at = index[i];
       result(at) = value(at);
     }
     return result;

@@ -281,19 +281,18 @@ std::vector<SensorErrorReport> sensor_error_reports(const Solution& solution, co
     if (!(prior > 0.0)) continue;
     const auto part = [&](const std::vector<double>& v) { return std::span<const double>(v.data(), solution.count); };
     const bool air_data = c >= internal::kFirstAirDataError && c < internal::kFirstCoefficientError;
-    errors.push_back(
-        {.name = internal::kColumns[c].name,
-         .unit = internal::kColumns[c].unit,
-         .value = air_data ? solution.air_error_found(static_cast<Eigen::Index>(c - internal::kFirstAirDataError))
-                           : numerics::median(part(solution.smoothed->value(c))),
-         .prior_sigma = prior,
-         .sigma = numerics::median(part(solution.smoothed->sigma(c)))});
+    errors.push_back({.name = internal::kColumns[c].name,
+                      .unit = internal::kColumns[c].unit,
+                      .value = air_data ? solution.air_error_found(c - internal::kFirstAirDataError)
+                                        : numerics::median(part(solution.smoothed->value(c))),
+                      .prior_sigma = prior,
+                      .sigma = numerics::median(part(solution.smoothed->sigma(c)))});
     kept.push_back(static_cast<Eigen::Index>(i));
   }
   const auto n = signed_index(kept.size());
   Eigen::MatrixXd covariance(n, n);
   for (Eigen::Index a = 0; a < n; ++a) {
-    for (Eigen::Index b = 0; b < n; ++b) covariance(a, b) = solution.error_covariance(kept[at(a)], kept[at(b)]);
+    for (Eigen::Index b = 0; b < n; ++b) covariance(a, b) = solution.error_covariance(kept[a], kept[b]);
   }
   return judge_sensor_errors(errors, covariance);
 }

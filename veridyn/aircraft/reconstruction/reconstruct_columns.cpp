@@ -20,8 +20,8 @@ Eigen::MatrixXd CovarianceView::of_columns(std::span<const std::size_t> columns)
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n, n);
   for (Eigen::Index a = 0; a < n; ++a) {
     for (Eigen::Index b = 0; b < n; ++b) {
-      const int row = state_of_column(columns[at(a)]);
-      const int column = state_of_column(columns[at(b)]);
+      const int row = state_of_column(columns[a]);
+      const int column = state_of_column(columns[b]);
       if (row >= 0 && column >= 0) out(a, b) = matrix(row, column);
     }
   }
@@ -91,7 +91,7 @@ void ResultColumns::write(std::size_t i, const AirDataMotion& motion, const AirD
           variance(P.coefficient_error + k));
     }
   }
-  for (std::size_t k = 0; k < 3; ++k) gust_[k][i] = gust(static_cast<Eigen::Index>(k));
+  for (std::size_t k = 0; k < 3; ++k) gust_[k][i] = gust(k);
   density_[i] = density;
 }
 
@@ -102,14 +102,14 @@ void ResultColumns::fill(std::size_t column, double value, double sigma) {
 
 void ResultColumns::widen(std::size_t count, const std::vector<ResultColumns>& shifted,
                           const Eigen::MatrixXd& correlation) {
-  Eigen::VectorXd d(signed_index(shifted.size()));
+  Eigen::VectorXd d(shifted.size());
   for (std::size_t c = 0; c < kColumns.size(); ++c) {
     if (value_[c].empty() || (c >= kFirstAirDataError && c < kFirstCoefficientError)) continue;
     const bool angle = std::string_view(kColumns[c].unit) == "rad";
     for (std::size_t i = 0; i < count; ++i) {
       for (std::size_t k = 0; k < shifted.size(); ++k) {
         const double change = shifted[k].value_[c][i] - value_[c][i];
-        d(static_cast<Eigen::Index>(k)) = angle ? numerics::wrap_angle(change) : change;
+        d(k) = angle ? numerics::wrap_angle(change) : change;
       }
       sigma_[c][i] = std::sqrt(sigma_[c][i] * sigma_[c][i] + std::max(0.0, d.dot(correlation * d)));
     }

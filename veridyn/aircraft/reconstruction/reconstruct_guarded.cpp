@@ -117,8 +117,7 @@ GuardedPass run_guarded(const SolveTask& task, const Eigen::Matrix<double, 5, 1>
 }
 
 void add_guard_channels(const GuardTrace& trace, const TimeBase& time, std::size_t count, Recording& filtered) {
-  const std::vector<double> used(trace.model_based.begin(),
-                                 trace.model_based.begin() + static_cast<std::ptrdiff_t>(count));
+  const std::vector<double> used(trace.model_based.begin(), trace.model_based.begin() + count);
   filtered.add(make_channel("model_based", "1", time, used));
   filtered.add(make_channel("guard_ratio", "1", time,
                             {trace.nis_ratio.begin(), trace.nis_ratio.begin() + static_cast<std::ptrdiff_t>(count)}));

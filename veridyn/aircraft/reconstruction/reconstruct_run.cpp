@@ -74,7 +74,7 @@ Start start_of(const RunSetting& setting, const Segment& segment) {
     const Stream& stream = s.sensors[which];
     if (stream.t.empty()) continue;
     const auto it = std::upper_bound(stream.t.begin(), stream.t.end(), segment.begin);
-    first[which] = stream.v[static_cast<std::size_t>(std::max<std::ptrdiff_t>(it - stream.t.begin() - 1, 0))];
+    first[which] = stream.v[std::max<std::ptrdiff_t>(it - stream.t.begin() - 1, 0)];
   }
   Start start;
   auto& x = start.x;

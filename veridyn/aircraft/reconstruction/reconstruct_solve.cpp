@@ -114,7 +114,7 @@ Solution solve_with_air_data_errors(const FilterEngine& engine, const SolveTask&
   for (std::size_t k = 0; k < errors.applied.size(); ++k) {
     const Eigen::Index i = errors.applied[k];
     setting.air_error = errors.correction();
-    setting.air_error(errors.index[static_cast<std::size_t>(i)]) += sigma(i);
+    setting.air_error(errors.index[i]) += sigma(i);
     Solution shifted = run_pass(engine, task, setting, columns,
                                 {&progress, static_cast<double>(k + 1) / parts, static_cast<double>(k + 2) / parts});
     smoothed_shifts.push_back(std::move(*shifted.smoothed));
@@ -127,7 +127,7 @@ Solution solve_with_air_data_errors(const FilterEngine& engine, const SolveTask&
   solution.smoothed->widen(solution.count, smoothed_shifts, of_applied);
   if (solution.filtered) solution.filtered->widen(solution.count, filtered_shifts, of_applied);
   for (Eigen::Index i = 0; i < m; ++i) {
-    const auto index = errors.index[static_cast<std::size_t>(i)];
+    const auto index = errors.index[i];
     const std::size_t column = kFirstAirDataError + static_cast<std::size_t>(index);
     if (std::ranges::find(errors.applied, i) == errors.applied.end())
       solution.not_applied.emplace_back(kColumns[column].name);
@@ -136,7 +136,7 @@ Solution solve_with_air_data_errors(const FilterEngine& engine, const SolveTask&
     if (solution.filtered) solution.filtered->fill(column, setting.air_error(index), sigma(i));
     for (Eigen::Index j = 0; j < m; ++j) {
       const auto at = [&](Eigen::Index k) {
-        const std::size_t c = kFirstAirDataError + static_cast<std::size_t>(errors.index[static_cast<std::size_t>(k)]);
+        const std::size_t c = kFirstAirDataError + static_cast<std::size_t>(errors.index[k]);
         return std::find(solution.error_columns.begin(), solution.error_columns.end(), c) -
                solution.error_columns.begin();
       };
@@ -153,9 +153,9 @@ ColumnSet estimated_columns(const ReconstructOptions& o, const FlightStreams& st
   std::fill_n(columns.begin(), kFirstImuBias, true);
   const auto leave_out = [&columns](std::initializer_list<const char*> names) {
     for (const char* name : names)
-      columns[at(std::ranges::find(kColumns, std::string_view(name),
-                                   [](const ColumnName& c) { return std::string_view(c.name); }) -
-                 kColumns.begin())] = false;
+      columns[std::ranges::find(kColumns, std::string_view(name),
+                                [](const ColumnName& c) { return std::string_view(c.name); }) -
+              kColumns.begin()] = false;
   };
   // Nothing tells the motion over ground from that of the air.
   if (!streams.has_ground_velocity())

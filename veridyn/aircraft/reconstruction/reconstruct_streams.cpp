@@ -352,7 +352,7 @@ ModelStreams load_model_streams(const Recording& recording, Subject subject, Fli
     stream.unit = "m/s^2";
     stream.t = s.accel.t;
     stream.v.clear();
-    for (const Eigen::Vector3d& a : s.accel.v) stream.v.push_back(a(static_cast<Eigen::Index>(axis)));
+    for (const Eigen::Vector3d& a : s.accel.v) stream.v.push_back(a(axis));
     stream.rate_Hz = s.accel.interval > 0.0 ? 1.0 / s.accel.interval : 0.0;
     stream.sigma = s.sigma.accelerometer;
   }

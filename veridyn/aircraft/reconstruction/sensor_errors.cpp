@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/index.hpp"
 
 namespace veridyn::aircraft {
 
@@ -57,7 +56,7 @@ std::vector<SensorErrorReport> judge_sensor_errors(const std::vector<SensorError
       const double correlation = scale > 0.0 ? covariance(a, b) / scale : 0.0;
       if (std::abs(correlation) <= std::abs(r.correlation)) continue;
       r.correlation = correlation;
-      r.correlated_with = errors[at(b)].name;
+      r.correlated_with = errors[b].name;
     }
     const auto text = [&](double v) { return fmt::format("{:.3g}{}", display_value(v, e.unit), display_unit(e.unit)); };
     switch (r.observability) {

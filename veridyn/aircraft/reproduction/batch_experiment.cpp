@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/parallel.hpp"
 
 namespace veridyn::aircraft {
@@ -37,7 +36,7 @@ BatchExperiment run_batch_experiment(const ExperimentOptions& o, const std::vect
       one.theta = e.theta;
       one.sigma.resize(n), one.low.resize(n), one.high.resize(n);
       for (Eigen::Index i = 0; i < n; ++i) {
-        const estimation::Parameter& p = e.parameters[at(i)];
+        const estimation::Parameter& p = e.parameters[i];
         one.sigma(i) = p.sigma, one.low(i) = p.low95, one.high(i) = p.high95;
       }
     }
@@ -62,7 +61,7 @@ BatchExperiment run_batch_experiment(const ExperimentOptions& o, const std::vect
       for (Eigen::Index i = 0; i < n; ++i)
         s.coverage(i) += out.rows.truth(i) >= one.low(i) && out.rows.truth(i) <= one.high(i) ? 1.0 : 0.0;
       const Eigen::VectorXd output = out.rows.regressors * one.theta;
-      s.output_error(static_cast<Eigen::Index>(k)) = (output - out.rows.regressand).cwiseAbs().maxCoeff() / largest;
+      s.output_error(k) = (output - out.rows.regressand).cwiseAbs().maxCoeff() / largest;
       if (k == 0) s.example.assign(output.data(), output.data() + output.size());
     }
     const double count = std::max(1, s.estimates);

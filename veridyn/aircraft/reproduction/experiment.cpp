@@ -75,7 +75,7 @@ ExactRows exact_rows(const ExperimentOptions& o, Progress& progress) {
   const std::vector<double>& density = truth.at("air_density").value;
   std::size_t changed = 0;
   for (Eigen::Index i = 0; i < count; ++i) {
-    const std::size_t k = used[at(i)];
+    const std::size_t k = used[i];
     while (changed < o.flight.changes.size() && time[k] >= o.flight.changes[changed].time - 1e-9)
       subject.model = o.flight.changes[changed++].model;
     FlightSample<double> sample;
@@ -91,10 +91,10 @@ ExactRows exact_rows(const ExperimentOptions& o, Progress& progress) {
   const auto deviation = [](const Eigen::VectorXd& x) { return std::sqrt((x.array() - x.mean()).square().mean()); };
   rows.noise_sd = Eigen::VectorXd::Zero(n + 1);
   for (Eigen::Index j = 0; j < n; ++j) {
-    if (!o.regressor_snr_dB || structure.terms[at(j)].constant()) continue;
+    if (!o.regressor_snr_dB || structure.terms[j].constant()) continue;
     rows.noise_sd(j) = deviation(rows.regressors.col(j)) * std::pow(10.0, -*o.regressor_snr_dB / 20.0);
     if (!(rows.noise_sd(j) > 0.0))
-      throw InputError("experiment", fmt::format("the flight never moves the regressor of {}", rows.names[at(j)]));
+      throw InputError("experiment", fmt::format("the flight never moves the regressor of {}", rows.names[j]));
   }
   rows.noise_sd(n) = deviation(rows.regressand) * std::pow(10.0, -o.snr_dB / 20.0);
   return rows;

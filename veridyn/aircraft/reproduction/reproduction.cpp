@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -129,7 +128,7 @@ class Expectations {
       }
       add(s.bias(worst, truth) > kBiasedSigmas,
           fmt::format("{}: the mean of {} is {:.4f}, the truth {:.4f}: {:.0f} times the scatter of an estimate away",
-                      method, names[at(worst)], s.mean(worst), truth(worst), s.bias(worst, truth)));
+                      method, names[worst], s.mean(worst), truth(worst), s.bias(worst, truth)));
     }
     for (const auto& [key, below] : {std::pair{"output_error_below", true}, std::pair{"output_error_above", false}}) {
       const StudyTable limits = expect_.table_or_empty(key);
@@ -265,9 +264,8 @@ class Expectations {
     const double deviation = std::sqrt((rows.regressand.array() - rows.regressand.mean()).square().mean());
     double worst = 0.0;
     for (std::size_t i = 0; i < h.value.size(); ++i) {
-      const auto j = static_cast<Eigen::Index>(i);
-      const double rms = std::sqrt(rows.regressors.col(j).array().square().mean());
-      worst = std::max(worst, std::abs(h.value[i][k] - rows.truth_at(row, j)) * rms / deviation);
+      const double rms = std::sqrt(rows.regressors.col(i).array().square().mean());
+      worst = std::max(worst, std::abs(h.value[i][k] - rows.truth_at(row, i)) * rms / deviation);
     }
     return worst;
   }

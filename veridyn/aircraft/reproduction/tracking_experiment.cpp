@@ -5,7 +5,6 @@
 #include <map>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/parallel.hpp"
 
 namespace veridyn::aircraft {
@@ -40,7 +39,7 @@ class Settling {
       at_start_(j) = kSettled * deviation / std::sqrt(rows.regressors.col(j).array().square().mean());
     Eigen::Index row = 0;
     for (const double begin : e_.phase_s) {
-      while (row + 1 < rows.truth_at.rows() && rows.time[at(row)] < begin - 1e-9) ++row;
+      while (row + 1 < rows.truth_at.rows() && rows.time[row] < begin - 1e-9) ++row;
       truth_.push_back(rows.truth_at.row(row).transpose());
     }
   }
@@ -62,7 +61,7 @@ class Settling {
     for (std::size_t k = 0; k < history.time.size() && phase_at(e_.phase_s, history.time[k]) == 0; ++k) {
       bool known = settled(history, k, 0);
       for (std::size_t i = 0; i < history.sigma.size() && known; ++i)
-        known = kNormal95 * history.sigma[i][k] <= at_start_(static_cast<Eigen::Index>(i));
+        known = kNormal95 * history.sigma[i][k] <= at_start_(i);
       if (!known)
         from = kNaN;
       else if (std::isnan(from))
@@ -74,12 +73,11 @@ class Settling {
  private:
   bool settled(const TrackHistory& history, std::size_t k, std::size_t phase) const {
     for (std::size_t i = 0; i < history.value.size(); ++i) {
-      const auto j = static_cast<Eigen::Index>(i);
-      const double error = std::abs(history.value[i][k] - truth_[phase](j));
+      const double error = std::abs(history.value[i][k] - truth_[phase](i));
       if (phase == 0 || truth_[phase] == truth_[phase - 1]) {
-        if (!(error <= at_start_(j))) return false;
-      } else if (truth_[phase](j) != truth_[phase - 1](j)) {
-        if (!(error <= kSettled * std::abs(truth_[phase](j)))) return false;
+        if (!(error <= at_start_(i))) return false;
+      } else if (truth_[phase](i) != truth_[phase - 1](i)) {
+        if (!(error <= kSettled * std::abs(truth_[phase](i)))) return false;
       }
     }
     return true;
@@ -167,7 +165,7 @@ TrackingExperiment run_tracking_experiment(const ExperimentOptions& o, const std
     for (std::size_t m = 0; m < trackers.size(); ++m) {
       CoefficientTracker tracker(model, W, trackers[m].options, o.rate_Hz);
       for (Eigen::Index i = 0; i < data.regressors.rows(); ++i) {
-        tracker.update(out.rows.time[at(i)], {data.regressors.row(i).data(), n}, data.regressand(i));
+        tracker.update(out.rows.time[i], {data.regressors.row(i).data(), n}, data.regressand(i));
       }
       TrackingRun& run = out.runs[m][seed];
       run.settling_s = settling.times(tracker.history());

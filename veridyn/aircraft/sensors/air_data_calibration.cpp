@@ -90,11 +90,11 @@ class Fitting {
     d.regressors.resize(n, with_square ? 3 : 2);
     d.regressand.resize(n);
     for (Eigen::Index i = 0; i < n; ++i) {
-      const double x = fit_.reference[static_cast<std::size_t>(i)];
+      const double x = fit_.reference[i];
       d.regressors(i, 0) = 1.0;
       d.regressors(i, 1) = x;
       if (with_square) d.regressors(i, 2) = x * x;
-      d.regressand(i) = fit_.raw[static_cast<std::size_t>(i)];
+      d.regressand(i) = fit_.raw[i];
     }
     d.parameter_names = {"bias", "scale"};
     if (with_square) d.parameter_names.emplace_back("quadratic");

@@ -125,9 +125,9 @@ AirDataConsistency scale_and_wind(const FlightRows& rows) {
   data.regressand.resize(2 * n);
   // North and east of a moment side by side: a gust is in both.
   for (Eigen::Index k = 0; k < n; ++k) {
-    const Vector3& v = rows.velocity[at(k)];
-    const double yaw = rows.attitude[at(k)](2);
-    const double level = level_airspeed(rows.airspeed[at(k)], v(2));
+    const Vector3& v = rows.velocity[k];
+    const double yaw = rows.attitude[k](2);
+    const double level = level_airspeed(rows.airspeed[k], v(2));
     for (Eigen::Index axis = 0; axis < 2; ++axis) {
       const double heading = axis == 0 ? std::cos(yaw) : std::sin(yaw);
       const Eigen::Index row = 2 * k + axis;
@@ -136,7 +136,7 @@ AirDataConsistency scale_and_wind(const FlightRows& rows) {
       data.regressors(row, 1 + axis) = 1.0;
       data.regressors(row, 3) = heading;
       data.regressors(row, 4 + axis) = 1.0;
-      data.segment.push_back(rows.segment[at(k)]);
+      data.segment.push_back(rows.segment[k]);
     }
   }
   const estimation::InstrumentalEstimate estimate = solve(std::move(data), 3, 2);
@@ -186,7 +186,7 @@ double largest_of(std::vector<double> values) {
 /// Mean of what is finite, with the error of a mean of correlated samples.
 Determined mean_of(const std::vector<double>& values, const std::vector<int>& segment) {
   RegressionData data;
-  data.regressors = estimation::RowMatrix::Ones(signed_index(values.size()), 2);
+  data.regressors = estimation::RowMatrix::Ones(values.size(), 2);
   data.regressand = Eigen::Map<const Eigen::VectorXd>(values.data(), signed_index(values.size()));
   data.segment = segment;
   const estimation::InstrumentalEstimate estimate = solve(std::move(data), 1);
@@ -296,7 +296,7 @@ std::optional<VaneSlope> slope_of(const Recording& recording, const char* vane,
   data.regressors = estimation::RowMatrix::Ones(count, 2 + instruments);
   data.regressand.resize(count);
   for (Eigen::Index i = 0; i < count; ++i) {
-    const std::size_t k = rows[at(i)];
+    const std::size_t k = rows[i];
     data.regressand(i) = reading[k] - reading[k - n];
     data.regressors(i, 0) = angle[k] - angle[k - n];
     Eigen::Index column = 2;

@@ -154,7 +154,7 @@ Eigen::RowVectorXd jacobian_of(const SwingTest& test, const AxisInertia& i) {
   using Jet = ceres::Jet<double, kInputs>;
   const Eigen::VectorXd v = values_of(test, i.test, i.frequency, i.cradle_frequency);
   std::array<Jet, kInputs> jets;
-  for (int k = 0; k < kInputs; ++k) jets[at(k)] = Jet(v(k), k);
+  for (int k = 0; k < kInputs; ++k) jets[k] = Jet(v(k), k);
   return terms_of(i.test, test.gravity, with_cradle(test), jets.data()).sum().v.transpose();
 }
 
@@ -228,10 +228,10 @@ Eigen::MatrixXd covariance_of(const SwingTest& test, const std::vector<AxisInert
     return jacobian_of(test, i).cwiseProduct(sigma_of(test, i).transpose());
   };
   for (Eigen::Index a = 0; a < n; ++a) {
-    covariance(a, a) = axes[at(a)].sigma() * axes[at(a)].sigma();
+    covariance(a, a) = axes[a].sigma() * axes[a].sigma();
     for (Eigen::Index b = 0; b < a; ++b) {
       // The two masses are the same in all tests; lines and lengths are measured for each.
-      const double shared = by_input(axes[at(a)]).head<2>().dot(by_input(axes[at(b)]).head<2>());
+      const double shared = by_input(axes[a]).head<2>().dot(by_input(axes[b]).head<2>());
       covariance(a, b) = covariance(b, a) = shared;
     }
   }
@@ -257,7 +257,7 @@ std::optional<Excess> excess_of(const std::vector<AxisInertia>& axes, const Eige
   return Excess{
       fmt::format(
           "I{} exceeds the sum of the other two by {:.2g} +- {:.2g} kg m^2, which no body of positive mass does",
-          axes[at(largest)].test.axis, excess, sigma),
+          axes[largest].test.axis, excess, sigma),
       excess > 2.0 * sigma};
 }
 
@@ -355,7 +355,7 @@ SwingAngle swing_angle(const Recording& recording, const std::string& channel) {
   std::vector<Eigen::Vector4d> q;
   for (std::size_t i = 0; i < first.size(); ++i) {
     Eigen::Vector4d v;
-    for (std::size_t k = 0; k < 4; ++k) v(static_cast<Eigen::Index>(k)) = recording.at(names[k]).value[i];
+    for (std::size_t k = 0; k < 4; ++k) v(k) = recording.at(names[k]).value[i];
     if (!v.allFinite() || !(v.norm() > 0.5)) continue;
     swing.time.push_back(first.times()[i]);
     q.push_back(v.normalized());
@@ -366,13 +366,13 @@ SwingAngle swing_angle(const Recording& recording, const std::string& channel) {
   for (const Eigen::Vector4d& v : q) A += v * v.transpose();
   const Eigen::Vector4d m = numerics::symmetric_eigen(A).vectors.col(3);
   const Eigen::Quaterniond mean(m(3), m(0), m(1), m(2));
-  Eigen::MatrixXd turn(signed_index(q.size()), 3);
+  Eigen::MatrixXd turn(q.size(), 3);
   for (std::size_t i = 0; i < q.size(); ++i) {
     const Eigen::Quaterniond d = mean.conjugate() * Eigen::Quaterniond(q[i](3), q[i](0), q[i](1), q[i](2));
     const double s = d.w() < 0.0 ? -1.0 : 1.0;
     const double n = d.vec().norm();
     const double scale = n > 1e-12 ? 2.0 * std::atan2(n, std::abs(d.w())) / n : 2.0;
-    turn.row(static_cast<Eigen::Index>(i)) = s * scale * d.vec().transpose();
+    turn.row(i) = s * scale * d.vec().transpose();
   }
   const numerics::SymmetricEigen principal = numerics::symmetric_eigen(turn.transpose() * turn);
   const Eigen::Vector3d axis = principal.vectors.col(2);

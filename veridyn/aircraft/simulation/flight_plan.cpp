@@ -63,7 +63,7 @@ void lower_peak(Multisine& m, double duration) {
   const Eigen::ArrayXd time =
       Eigen::ArrayXd::LinSpaced(n, 0.0, duration * static_cast<double>(n - 1) / static_cast<double>(n));
   for (Eigen::Index k = 0; k < harmonics; ++k) {
-    const double omega = 2.0 * kPi * m.frequency[static_cast<std::size_t>(k)];
+    const double omega = 2.0 * kPi * m.frequency[k];
     sine.col(k) = (omega * time).sin();
     cosine.col(k) = (omega * time).cos();
   }

@@ -130,7 +130,7 @@ std::vector<TrackedFilterError> FilterHistory::errors(const Recording& truth) co
     const auto column = [&](std::string_view name) -> const std::vector<double>& {
       const auto* found =
           std::find_if(kHistory.begin(), kHistory.end(), [&](const HistoryColumn& c) { return name == c.name; });
-      return value_[static_cast<std::size_t>(found - kHistory.begin())];
+      return value_[found - kHistory.begin()];
     };
     const std::vector<double>& guarded = column(quantity);
     const std::vector<double>& free = column(free_name);

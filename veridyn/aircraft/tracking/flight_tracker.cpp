@@ -113,7 +113,7 @@ void FlightTracker::take(std::size_t index, const FlightSignals& signals, const 
   std::vector<std::size_t> rows;
   estimation::RegressionData data;
   data.parameter_names.resize(c.model.size());
-  data.regressors.resize(static_cast<Eigen::Index>(grid_points.size()), n);
+  data.regressors.resize(grid_points.size(), n);
   data.regressand.resize(data.regressors.rows());
   for (const std::size_t k : grid_points) {
     const FlightSample<double> sample = signals.sample(k);
@@ -129,7 +129,7 @@ void FlightTracker::take(std::size_t index, const FlightSignals& signals, const 
   data.regressand.conservativeResize(count);
   internal::take_out_jumps(c.model, signals, rows, data);
   for (Eigen::Index i = 0; i < count; ++i) {
-    const std::size_t k = rows[static_cast<std::size_t>(i)];
+    const std::size_t k = rows[i];
     take_row(index, signals.grid.at(k), {data.regressors.row(i).data(), c.model.size()}, data.regressand(i),
              row_error_covariance(c.model, signals, k, subject_), found);
   }
@@ -174,9 +174,8 @@ void FlightTracker::begin(std::size_t index, std::vector<FlightChange>& found) {
     }
     if (complete) {
       for (Eigen::Index i = 0; i < n; ++i) {
-        theta(i) = start_->parameters[static_cast<std::size_t>(at[static_cast<std::size_t>(i)])].value;
-        for (Eigen::Index j = 0; j < n; ++j)
-          P(i, j) = start_->covariance(at[static_cast<std::size_t>(i)], at[static_cast<std::size_t>(j)]);
+        theta(i) = start_->parameters[at[i]].value;
+        for (Eigen::Index j = 0; j < n; ++j) P(i, j) = start_->covariance(at[i], at[j]);
       }
     }
   }

@@ -52,7 +52,7 @@ estimation::Estimate judged_estimate(const FlightTracker& tracker, std::span<con
   std::size_t at = 0;
   for (const TrackedCoefficient& c : tracker.coefficients()) {
     if (!c.tracker) continue;
-    const auto first = estimate.parameters.begin() + static_cast<std::ptrdiff_t>(at);
+    const auto first = estimate.parameters.begin() + at;
     const auto last = first + signed_index(c.model.size());
     at += c.model.size();
     const std::vector<Evidence> rows = tracked_evidence(c, tracker.subject());

@@ -10,7 +10,6 @@
 #include "veridyn/core/at_place.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/files.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/numerics/linear_algebra/cholesky.hpp"
 

@@ -8,7 +8,6 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/io/tables/table.hpp"
 
 namespace veridyn::camera {
@@ -29,8 +28,8 @@ std::vector<InertialReading> parse_inertial(std::string_view text, std::string s
   for (std::size_t i = 0; i < table.rows(); ++i) {
     InertialReading r{.time = time[i], .rate = {}, .force = {}};
     for (int k = 0; k < 3; ++k) {
-      r.rate(k) = (*rate[at(k)])[i];
-      r.force(k) = (*force[at(k)])[i];
+      r.rate(k) = (*rate[k])[i];
+      r.force(k) = (*force[k])[i];
     }
     const std::string place = fmt::format("{}:{}", table.source, table.lines[i]);
     if (!std::isfinite(r.time) || !r.rate.allFinite() || !r.force.allFinite())

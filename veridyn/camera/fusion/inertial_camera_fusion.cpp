@@ -149,7 +149,7 @@ void InertialCameraFusion::start(const Frame& frame) {
   const Eigen::Vector3d rate(last.sample.rate);
   const std::array<int, 3> index{Model::kX, Model::kX + 1, Model::kHeading};
   for (int i = 0; i < 3; ++i)
-    for (int k = 0; k < 3; ++k) P(index[at(i)], index[at(k)]) = frame.covariance(i, k);
+    for (int k = 0; k < 3; ++k) P(index[i], index[k]) = frame.covariance(i, k);
   P(0, 0) += square(kSpeed * apart);
   P(1, 1) += square(kSpeed * apart);
   P(Model::kHeading, Model::kHeading) += square((std::abs(rate(2)) + 1.0) * apart);
@@ -221,7 +221,7 @@ void InertialCameraFusion::enter(const Frame& frame, double time, const Model::I
     wider(2) = 0.5 * angular(2) * angular(2) * P_tt * P_tt + P(Model::kGyroBias + 2, Model::kGyroBias + 2) * P_tt;
     const Eigen::Vector3d w = whiten.row(i).transpose();
     const Filter::Vector row = H.transpose() * w;
-    filter.update(time, w.dot(off), row, 1.0 + w.cwiseAbs2().dot(wider), monitors[at(i)]);
+    filter.update(time, w.dot(off), row, 1.0 + w.cwiseAbs2().dot(wider), monitors[i]);
   }
 }
 

@@ -53,7 +53,7 @@ OverheadRenderer::OverheadRenderer(OverheadScene scene, std::uint64_t seed) : sc
         const double dx = std::abs(std::remainder((*p)(0), kEvery)), dy = std::abs(std::remainder((*p)(1), kEvery));
         if (std::min(dx, dy) < kHalfWidth) grey += scene_.line;
       }
-      still_[at(y) * at(scene_.width) + at(x)] = static_cast<float>(grey);
+      still_[y * scene_.width + x] = static_cast<float>(grey);
     }
   }
 }
@@ -77,7 +77,7 @@ void OverheadRenderer::add_spot(const std::vector<Eigen::Vector2d>& path, double
             sum += 0.5 * std::erfc((r - radius_px) / (std::sqrt(2.0) * scene_.spread_px));
           }
         }
-        light_[at(y) * at(scene_.width) + at(x)] +=
+        light_[y * scene_.width + x] +=
             static_cast<float>(brightness * sum / (kSub * kSub * static_cast<double>(path.size())));
       }
     }
@@ -118,7 +118,7 @@ GreyImage OverheadRenderer::render(double time) {
             const double side = -std::sin(middle(2)) * d(0) + std::cos(middle(2)) * d(1);
             covered += std::abs(forward) < 0.15 && std::abs(side) < 0.075 ? 1 : 0;
           }
-          light_[at(y) * at(scene_.width) + at(x)] += static_cast<float>(scene_.car * room * covered / 9.0);
+          light_[y * scene_.width + x] += static_cast<float>(scene_.car * room * covered / 9.0);
         }
       }
     }
@@ -141,7 +141,7 @@ GreyImage OverheadRenderer::render(double time) {
     for (int x = 0; x < scene_.width; ++x, ++i) {
       const float grey = light_[i];
       const auto sigma = static_cast<float>(std::sqrt(dark + scene_.photons * grey));
-      image.pixels[i] = static_cast<std::uint8_t>(std::clamp(grey + sigma * noise_[from + at(x)] + 0.5F, 0.0F, 255.0F));
+      image.pixels[i] = static_cast<std::uint8_t>(std::clamp(grey + sigma * noise_[from + x] + 0.5F, 0.0F, 255.0F));
     }
   }
   return image;

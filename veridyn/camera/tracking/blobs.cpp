@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/index.hpp"
 
 namespace veridyn::camera {
 namespace {
@@ -34,9 +33,9 @@ double middle_of(const std::array<int, N>& histogram, int count) {
 }
 
 int root_of(std::vector<int>& parent, int label) {
-  while (parent[at(label)] != label) {
-    parent[at(label)] = parent[at(parent[at(label)])];
-    label = parent[at(label)];
+  while (parent[label] != label) {
+    parent[label] = parent[parent[label]];
+    label = parent[label];
   }
   return label;
 }
@@ -62,7 +61,7 @@ void BlobFinder::measure_levels(const GreyView& image) {
     const std::uint8_t* row = image.row(y);
     for (int x = 0; x + 1 < image.width; x += 8) {
       ++levels[row[x]];
-      ++differences[at(std::abs(row[x + 1] - row[x]))];
+      ++differences[std::abs(row[x + 1] - row[x])];
       ++count;
     }
   }
@@ -114,7 +113,7 @@ void BlobFinder::find_boxes(const GreyView& image) {
     for (std::size_t k = above; k < i && runs_[k].y < runs_[i].y; ++k) {
       if (runs_[k].last + 1 >= runs_[i].first && runs_[k].first <= runs_[i].last + 1) {
         const int a = root_of(parent_, static_cast<int>(k)), b = root_of(parent_, static_cast<int>(i));
-        parent_[at(std::max(a, b))] = std::min(a, b);
+        parent_[std::max(a, b)] = std::min(a, b);
       }
     }
   }
@@ -122,12 +121,12 @@ void BlobFinder::find_boxes(const GreyView& image) {
   box_of_.assign(runs_.size(), -1);
   for (std::size_t i = 0; i < runs_.size(); ++i) {
     const Run& run = runs_[i];
-    int& index = box_of_[at(root_of(parent_, static_cast<int>(i)))];
+    int& index = box_of_[root_of(parent_, static_cast<int>(i))];
     if (index < 0) {
       index = static_cast<int>(boxes_.size());
       boxes_.push_back({run.first, run.last, run.y, run.y, 0, 0});
     }
-    Box& box = boxes_[at(index)];
+    Box& box = boxes_[index];
     box.x0 = std::min(box.x0, run.first);
     box.x1 = std::max(box.x1, run.last);
     box.y1 = std::max(box.y1, run.y);

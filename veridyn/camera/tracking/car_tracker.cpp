@@ -9,7 +9,6 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/rotation.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -273,7 +272,7 @@ void CarTracker::correct(double time, const PoseMeasurement& measured) {
     off(2) = numerics::wrap_angle(off(2));
     Filter::Vector H = Filter::Vector::Zero();
     H.head<3>() = whiten.row(i).transpose();
-    filter_.update(time, whiten.row(i).dot(off), H, 1.0, monitors_[at(i)]);
+    filter_.update(time, whiten.row(i).dot(off), H, 1.0, monitors_[i]);
   }
 }
 

@@ -40,7 +40,7 @@ double SilhouetteFinder::brightness(const GreyView& image) {
   constexpr int kEvery = 16;
   for (int y = 0; y < height_; y += kEvery) {
     for (int x = 0; x < width_; x += kEvery) {
-      const float ground = background_[at(y) * at(width_) + at(x)];
+      const float ground = background_[y * width_ + x];
       if (ground > 4.0F) ratios_.push_back(static_cast<float>(image.row(y)[x]) / ground);
     }
   }
@@ -54,7 +54,7 @@ double SilhouetteFinder::brightness(const GreyView& image) {
 }
 
 double SilhouetteFinder::difference(const GreyView& image, int x, int y) const {
-  return std::abs(image.row(y)[x] - gain_ * background_[at(y) * at(width_) + at(x)]);
+  return std::abs(image.row(y)[x] - gain_ * background_[y * width_ + x]);
 }
 
 void SilhouetteFinder::compare(const GreyView& image) {
@@ -63,8 +63,8 @@ void SilhouetteFinder::compare(const GreyView& image) {
   std::fill(cells_.begin(), cells_.end(), std::uint8_t{0});
   for (int y = 0; y < height_; ++y) {
     const std::uint8_t* row = image.row(y);
-    const float* ground = &background_[at(y) * at(width_)];
-    std::uint8_t* mask = &mask_[at(y) * at(width_)];
+    const float* ground = &background_[y * width_];
+    std::uint8_t* mask = &mask_[y * width_];
     for (int x = 0; x < width_; ++x)
       mask[x] = std::abs(static_cast<float>(row[x]) - gain * ground[x]) > limit ? std::uint8_t{1} : std::uint8_t{0};
     std::uint8_t* cells = &cells_[at(y / kCell) * at(across_)];
@@ -79,7 +79,7 @@ void SilhouetteFinder::learn(const GreyView& image) {
   const auto share = static_cast<float>(1.0 / options_.learning_frames);
   for (int y = 0; y < height_; ++y) {
     const std::uint8_t* row = image.row(y);
-    float* ground = &background_[at(y) * at(width_)];
+    float* ground = &background_[y * width_];
     const std::uint8_t* cells = &cells_[at(y / kCell) * at(across_)];
     for (int x = 0; x < width_; ++x)
       if (cells[x / kCell] == 0) ground[x] += share * (static_cast<float>(row[x]) - ground[x]);
@@ -117,10 +117,10 @@ std::optional<int> SilhouetteFinder::largest_part() {
     while (!stack_.empty()) {
       const int cell = stack_.back();
       stack_.pop_back();
-      pixels += cells_[at(cell)];
+      pixels += cells_[cell];
       for_each_cell_around(cell % across_, cell / across_, [&](int other) {
-        if (part_[at(other)] >= 0 || cells_[at(other)] < kHalf) return;
-        part_[at(other)] = number;
+        if (part_[other] >= 0 || cells_[other] < kHalf) return;
+        part_[other] = number;
         stack_.push_back(other);
       });
     }
@@ -137,7 +137,7 @@ double SilhouetteFinder::inside_difference(const GreyView& image, int part) cons
   double sum = 0.0, count = 0.0;
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
-      if (part_[at(y / kCell * across_ + x / kCell)] != part || mask_[at(y) * at(width_) + at(x)] == 0) continue;
+      if (part_[y / kCell * across_ + x / kCell] != part || mask_[y * width_ + x] == 0) continue;
       sum += difference(image, x, y);
       count += 1.0;
     }
@@ -157,7 +157,7 @@ std::optional<SilhouetteFinder::Shape> SilhouetteFinder::shape(const GreyView& i
   for (int cell = 0; cell < across_ * down_; ++cell) {
     const int cx = cell % across_, cy = cell / across_;
     bool belongs = false;
-    for_each_cell_around(cx, cy, [&](int other) { belongs = belongs || part_[at(other)] == part; });
+    for_each_cell_around(cx, cy, [&](int other) { belongs = belongs || part_[other] == part; });
     if (!belongs) continue;
     if (cx == 0 || cy == 0 || cx + 1 == across_ || cy + 1 == down_) return std::nullopt;  // cut off by the picture
     for (int pixel = 0; pixel < kCell * kCell; ++pixel) {

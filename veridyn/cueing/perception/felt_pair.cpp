@@ -2,7 +2,6 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/index.hpp"
 
 namespace veridyn::cueing {
 
@@ -10,7 +9,7 @@ FeltPair felt_pair(const VestibularModel& model, const MotionThresholds& thresho
                    double height) {
   using numerics::StateSpace;
   constexpr Eigen::Index kOtoliths = FeltPair::kOtolithStates, kCanals = FeltPair::kFeltStates - kOtoliths;
-  const StateSpace otoliths = numerics::realise(model.otoliths), canal = numerics::realise(model.canals[at(pair)]);
+  const StateSpace otoliths = numerics::realise(model.otoliths), canal = numerics::realise(model.canals[pair]);
   if (otoliths.states() != kOtoliths || canal.states() != kCanals || otoliths.D(0, 0) != 0.0 || canal.D(0, 0) != 0.0)
     throw InputError("perception",
                      "a plan takes otoliths of second and canals of third order, as those of \"young_meiry\"");
@@ -34,8 +33,8 @@ FeltPair felt_pair(const VestibularModel& model, const MotionThresholds& thresho
     s.B.block(0, FeltPair::kShiftInput, kOtoliths, 1) = otoliths.B;
   }
   s.C.setZero(2, n);
-  s.C.block(0, 0, 1, kOtoliths) = otoliths.C / thresholds.force[at(1 - pair)];
-  s.C.block(1, kOtoliths, 1, kCanals) = canal.C / thresholds.rate[at(pair)];
+  s.C.block(0, 0, 1, kOtoliths) = otoliths.C / thresholds.force[1 - pair];
+  s.C.block(1, kOtoliths, 1, kCanals) = canal.C / thresholds.rate[pair];
   s.D.setZero(2, 4);
   return felt;
 }

@@ -11,9 +11,8 @@ Perception::Perception(const VestibularModel& model)
 Perception::Felt Perception::reset(const Eigen::Vector3d& force, const Eigen::Vector3d& rate) {
   Felt felt;
   for (std::size_t i = 0; i < 3; ++i) {
-    const auto axis = static_cast<Eigen::Index>(i);
-    felt.rate(axis) = canals_[i].reset(rate(axis));
-    felt.force(axis) = otoliths_[i].reset(force(axis));
+    felt.rate(i) = canals_[i].reset(rate(i));
+    felt.force(i) = otoliths_[i].reset(force(i));
   }
   return felt;
 }
@@ -21,9 +20,8 @@ Perception::Felt Perception::reset(const Eigen::Vector3d& force, const Eigen::Ve
 Perception::Felt Perception::step(const Eigen::Vector3d& force, const Eigen::Vector3d& rate, double step) {
   Felt felt;
   for (std::size_t i = 0; i < 3; ++i) {
-    const auto axis = static_cast<Eigen::Index>(i);
-    felt.rate(axis) = canals_[i].step(rate(axis), step);
-    felt.force(axis) = otoliths_[i].step(force(axis), step);
+    felt.rate(i) = canals_[i].step(rate(i), step);
+    felt.force(i) = otoliths_[i].step(force(i), step);
   }
   return felt;
 }

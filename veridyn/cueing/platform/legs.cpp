@@ -99,8 +99,7 @@ Legs::Values Legs::positions(const PlatformCommand& pose) const {
   const Eigen::Matrix3d R = turned(pose);
   Values l(count());
   for (Eigen::Index i = 0; i < count(); ++i) {
-    const auto leg = static_cast<std::size_t>(i);
-    l(i) = between(geometry_, pose, R, leg).norm() - neutral_[leg];
+    l(i) = between(geometry_, pose, R, i).norm() - neutral_[i];
   }
   return l;
 }
@@ -109,13 +108,12 @@ Legs::Square Legs::jacobian(const PlatformCommand& pose) const {
   const Eigen::Matrix3d R = turned(pose);
   Square J(count(), count());
   for (Eigen::Index i = 0; i < count(); ++i) {
-    const auto leg = static_cast<std::size_t>(i);
-    const Vector along = between(geometry_, pose, R, leg).normalized();
+    const Vector along = between(geometry_, pose, R, i).normalized();
     // along . (omega x head), in the platform's own axes.
-    const Vector turning = geometry_.heads[leg].cross(R.transpose() * along);
+    const Vector turning = geometry_.heads[i].cross(R.transpose() * along);
     for (std::size_t k = 0; k < axes_.size(); ++k) {
       const auto axis = static_cast<Eigen::Index>(axes_[k]);
-      double& entry = J(i, static_cast<Eigen::Index>(k));
+      double& entry = J(i, k);
       if (turns(axes_[k])) {
         entry = turning.dot(numerics::body_rates(pose.angle(0), pose.angle(1), Vector(Vector::Unit(axis - 3))));
       } else {
@@ -145,7 +143,7 @@ Legs::Lengths Legs::lengths(const PlatformState& s) const {
   const Eigen::Index n = count();
   Values rate(n), acceleration(n);
   for (Eigen::Index k = 0; k < n; ++k) {
-    const AxisState a = axis(s, axes_[static_cast<std::size_t>(k)]);
+    const AxisState a = axis(s, axes_[k]);
     rate(k) = a.rate;
     acceleration(k) = a.acceleration;
   }
@@ -160,7 +158,7 @@ Legs::Lengths Legs::lengths(const PlatformState& s) const {
 std::optional<PlatformState> Legs::state(const Lengths& lengths, const PlatformState& near) const {
   const Eigen::Index n = count();
   const auto as_state = [&](const Values& values, auto&& set) {
-    for (Eigen::Index k = 0; k < n; ++k) set(axes_[static_cast<std::size_t>(k)], values(k));
+    for (Eigen::Index k = 0; k < n; ++k) set(axes_[k], values(k));
   };
   PlatformState found;
   found.shift = near.shift;

@@ -126,10 +126,9 @@ Experiment level_track() {
       Eigen::Matrix<double, kFrames, 3> terms;
       Eigen::Matrix<double, kFrames, 1> places;
       for (std::size_t i = 0; i < kFrames; ++i) {
-        const auto row = static_cast<Eigen::Index>(i);
         const double s = kCamera * (static_cast<double>(i) - 0.5 * (kFrames - 1.0));
-        terms.row(row) << 1.0, s, 0.5 * s * s;
-        places(row) = seen[seen.size() - kFrames + i];
+        terms.row(i) << 1.0, s, 0.5 * s * s;
+        places(i) = seen[seen.size() - kFrames + i];
       }
       camera = terms.colPivHouseholderQr().solve(places)(2);
     }

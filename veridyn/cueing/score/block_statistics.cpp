@@ -5,7 +5,6 @@
 #include <random>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::cueing {
@@ -27,7 +26,7 @@ BlockStatistics::BlockStatistics(std::span<const double> x, std::span<const doub
   for (std::size_t b = 0; b < blocks_; ++b) {
     const std::ptrdiff_t from = static_cast<std::ptrdiff_t>(b) * block, to = b + 1 == blocks_ ? n : from + block;
     for (std::ptrdiff_t k = from; k < to; ++k) {
-      const double off = y[at(k)] - x[at(k)];
+      const double off = y[k] - x[k];
       squares_[b] += off * off;
       above_[b] += std::abs(off) > noticed ? 1.0 : 0.0;
       samples_[b] += 1.0;
@@ -36,7 +35,7 @@ BlockStatistics::BlockStatistics(std::span<const double> x, std::span<const doub
       const std::ptrdiff_t lag = first + static_cast<std::ptrdiff_t>(l);
       Sums s;
       for (std::ptrdiff_t k = std::max(from, lag), end = std::min(to, n + lag); k < end; ++k) {
-        const double u = x[at(k - lag)], v = y[at(k)];
+        const double u = x[k - lag], v = y[k];
         s.n += 1.0;
         s.x += u;
         s.y += v;

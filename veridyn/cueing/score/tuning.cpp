@@ -42,7 +42,7 @@ std::vector<Coordinate> coordinates(const std::vector<Knob>& knobs, bool togethe
 void turn(WashoutDesign& design, const std::vector<Coordinate>& to, const Eigen::VectorXd& x) {
   const std::vector<Knob> knobs = design.knobs();
   for (std::size_t i = 0; i < to.size(); ++i) {
-    const double v = x(static_cast<Eigen::Index>(i));
+    const double v = x(i);
     const auto values = knobs[to[i].knob].values.subspan(to[i].first, to[i].count);
     std::fill(values.begin(), values.end(), to[i].logarithmic ? std::exp(v) : v);
   }
@@ -125,7 +125,7 @@ Tuning tuned(const WashoutDesign& design, const Platform& platform, const std::v
     estimation::BlackBoxProblem problem{.name = "washout", .low = Eigen::VectorXd(n), .high = Eigen::VectorXd(n)};
     Eigen::VectorXd start(n);
     for (Eigen::Index i = 0; i < n; ++i) {
-      const Coordinate& c = to[at(i)];
+      const Coordinate& c = to[i];
       problem.names.push_back(fmt::format("{}[{}]", knobs[c.knob].name, c.first));
       problem.low(i) = c.low;
       problem.high(i) = c.high;

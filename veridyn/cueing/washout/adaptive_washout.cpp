@@ -1,7 +1,5 @@
 #include "veridyn/cueing/washout/adaptive_washout.hpp"
 
-#include "veridyn/core/index.hpp"
-
 namespace veridyn::cueing {
 
 std::vector<Knob> AdaptiveDesign::knobs() {
@@ -25,7 +23,7 @@ AdaptiveWashout::AdaptiveWashout(const AdaptiveDesign& d, const Platform& platfo
     : design_(checked(d)), shared_(d.shared) {
   for (Eigen::Index i = 0; i < 2; ++i) {
     const AxisLimits& limits = platform.limits[shift_axis(i)];
-    pairs_[at(i)].range = 0.5 * (limits.highest - limits.lowest);
+    pairs_[i].range = 0.5 * (limits.highest - limits.lowest);
   }
 }
 

@@ -34,24 +34,22 @@ PlatformCommand ClassicalWashout::next(const VehicleMotion& motion, SampleStep s
   Eigen::Vector3d shift, change;
   PlatformCommand command;
   for (std::size_t i = 0; i < 3; ++i) {
-    const auto axis = static_cast<Eigen::Index>(i);
-    const ChannelOutput s = shift_[i].step(design_.force_gain[i] * a(axis), step);
-    shift(axis) = s.place;
-    change(axis) = s.change;
-    const ChannelOutput t = turn_[i].step(design_.rate_gain[i] * motion.rate(axis), step);
-    command.angle(axis) = t.place;
-    command.rate(axis) = t.change;
+    const ChannelOutput s = shift_[i].step(design_.force_gain[i] * a(i), step);
+    shift(i) = s.place;
+    change(i) = s.change;
+    const ChannelOutput t = turn_[i].step(design_.rate_gain[i] * motion.rate(i), step);
+    command.angle(i) = t.place;
+    command.rate(i) = t.change;
   }
   command.shift = shift_from_frd(shift);
   command.acceleration = shift_from_frd(change);
   const Eigen::Vector2d force = tilted_force(motion.force);
   for (std::size_t i = 0; i < 2; ++i) {
-    const auto axis = static_cast<Eigen::Index>(i);
     const double gain = design_.force_gain[1 - i];
-    const double lasting = cueing::next(low_pass_[i], gain * force(axis), step);
+    const double lasting = cueing::next(low_pass_[i], gain * force(i), step);
     const ChannelOutput t = tilt_[i].step(lasting, design_.tilt_rate, step);
-    command.angle(axis) += t.place;
-    command.rate(axis) += t.change;
+    command.angle(i) += t.place;
+    command.rate(i) += t.change;
   }
   return command;
 }

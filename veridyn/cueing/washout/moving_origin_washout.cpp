@@ -1,6 +1,5 @@
 #include "veridyn/cueing/washout/moving_origin_washout.hpp"
 
-#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/linear_algebra/matrix_exponential.hpp"
 
 namespace veridyn::cueing {
@@ -34,7 +33,7 @@ MovingOriginWashout::MovingOriginWashout(const MovingOriginDesign& d, const Plat
   fading << 0.0, 1.0, 0.0, -d.onset * d.onset, -2.0 * d.shared.zeta * d.onset, 1.0, 0.0, 0.0, -1.0 / d.fades;
   for (int k = 0; k < kMoments; ++k) {
     const double t = 3.0 / d.onset * (k + 1) / kMoments;
-    foreseen_[at(k)] = numerics::matrix_exponential(Eigen::MatrixXd(t * fading)).row(0);
+    foreseen_[k] = numerics::matrix_exponential(Eigen::MatrixXd(t * fading)).row(0);
   }
 }
 

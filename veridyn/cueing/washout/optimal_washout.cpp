@@ -92,7 +92,7 @@ OptimalChannel::OptimalChannel(const Options& o) : turns_(o.turns), shifts_(o.sh
   const auto m = static_cast<Eigen::Index>(inputs.size());
   Eigen::MatrixXd B = Eigen::MatrixXd::Zero(n + 2, m), R = Eigen::MatrixXd::Zero(m, m);
   for (Eigen::Index k = 0; k < m; ++k) {
-    const Eigen::Index input = inputs[static_cast<std::size_t>(k)];
+    const Eigen::Index input = inputs[k];
     B.col(k).head(n) = of_platform_.col(input);
     R(k, k) = input == 0 ? kTurnInput / std::pow(10.0 * kDegree, 2) : kShiftInput;
   }
@@ -104,7 +104,7 @@ OptimalChannel::OptimalChannel(const Options& o) : turns_(o.turns), shifts_(o.sh
   const numerics::LinearQuadratic lq = numerics::linear_quadratic(A, B, Q, R);
   residual_ = lq.residual;
   for (Eigen::Index k = 0; k < m; ++k) {
-    const Eigen::Index input = inputs[static_cast<std::size_t>(k)];
+    const Eigen::Index input = inputs[k];
     K_.row(input) = lq.K.row(k).head(n);
     K_vehicle_.row(input) = lq.K.row(k).tail(2);
   }

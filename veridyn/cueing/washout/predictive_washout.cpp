@@ -181,9 +181,8 @@ PredictiveWashout::PredictiveWashout(const PredictiveDesign& d, const Platform& 
                 numerics::CausalFilter(numerics::low_pass(2.0, 1.0))},
       shift_{ShiftChannel(1.0, 1.0, 0.0), ShiftChannel(1.0, 1.0, 0.0)} {
   for (Eigen::Index i = 0; i < 2; ++i) {
-    const auto pair = static_cast<std::size_t>(i);
-    shifts_[pair] = platform.limits[shift_axis(i)].moves();
-    if (shifts_[pair]) {
+    shifts_[i] = platform.limits[shift_axis(i)].moves();
+    if (shifts_[i]) {
       shifting_.emplace_back(d, platform, i);
     } else {
       tilting_.emplace_back(d, platform, i);
@@ -221,8 +220,7 @@ std::string PredictiveWashout::account() const {
 }
 
 double PredictiveWashout::planned_force(const Eigen::Vector3d& force, Eigen::Index pair) const {
-  const double wanted = design_.shared.force_gain[static_cast<std::size_t>(1 - pair)] *
-                        paired_input(force, Eigen::Vector3d::Zero(), pair)(0);
+  const double wanted = design_.shared.force_gain[1 - pair] * paired_input(force, Eigen::Vector3d::Zero(), pair)(0);
   // The plan takes g times the angle for the force.
   return kGravity * std::asin(std::clamp(wanted / kGravity, -1.0, 1.0));
 }
@@ -236,11 +234,10 @@ void PredictiveWashout::look_ahead(const VehicleMotion& motion, SampleStep step)
   const bool foreseen = design_.foresight->look(*motion.sample, step.value_or(0.0), foreseen_);
   std::size_t tilting = 0, shifting = 0;
   for (Eigen::Index i = 0; i < 2; ++i) {
-    const auto pair = static_cast<std::size_t>(i);
     const double now = foreseen ? planned_force(foreseen_.now, i) : 0.0;
     std::array<double, kForeseenSteps> then = {};
     for (std::size_t k = 0; foreseen && k < kForeseenSteps; ++k) then[k] = planned_force(foreseen_.then[k], i);
-    if (shifts_[pair]) {
+    if (shifts_[i]) {
       shifting_[shifting++].foresee(now, then);
     } else {
       tilting_[tilting++].foresee(now, then);
@@ -249,9 +246,9 @@ void PredictiveWashout::look_ahead(const VehicleMotion& motion, SampleStep step)
     const double as_force = paired_input(motion.force, Eigen::Vector3d::Zero(), i)(0),
                  known = paired_input(foreseen_.now, Eigen::Vector3d::Zero(), i)(0),
                  comes = paired_input(foreseen_.then[kAhead], Eigen::Vector3d::Zero(), i)(0);
-    foresight_account_[pair].add(as_force,
-                                 comes + (as_force - known) * std::exp(-ForesightAccount::kAhead / design_.fades),
-                                 foreseen, step.value_or(0.0));
+    foresight_account_[i].add(as_force,
+                              comes + (as_force - known) * std::exp(-ForesightAccount::kAhead / design_.fades),
+                              foreseen, step.value_or(0.0));
   }
 }
 

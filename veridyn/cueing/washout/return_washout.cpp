@@ -1,7 +1,5 @@
 #include "veridyn/cueing/washout/return_washout.hpp"
 
-#include "veridyn/core/index.hpp"
-
 namespace veridyn::cueing {
 
 std::vector<Knob> ReturnDesign::knobs() {
@@ -21,7 +19,7 @@ std::unique_ptr<Washout> ReturnDesign::make(const Platform& platform) const {
 ReturnWashout::ReturnWashout(const ReturnDesign& d, const Platform& platform) : design_(checked(d)), shared_(d.shared) {
   for (Eigen::Index i = 0; i < 2; ++i) {
     const AxisLimits& axis = platform.limits[shift_axis(i)];
-    if (axis.moves()) pairs_[at(i)].reach = 0.8 * std::min(-axis.lowest, axis.highest);
+    if (axis.moves()) pairs_[i].reach = 0.8 * std::min(-axis.lowest, axis.highest);
   }
 }
 

@@ -29,10 +29,9 @@ void SharedChannels::add_to(PlatformCommand& command, const Eigen::Vector3d& a, 
   command.shift.z() = heave.place;
   command.acceleration.z() = heave.change;
   for (std::size_t i = 0; i < 3; ++i) {
-    const auto axis = static_cast<Eigen::Index>(i);
-    const ChannelOutput t = turn_[i].step(rate_gain_[i] * rate(axis), step);
-    command.angle(axis) += t.place;
-    command.rate(axis) += t.change;
+    const ChannelOutput t = turn_[i].step(rate_gain_[i] * rate(i), step);
+    command.angle(i) += t.place;
+    command.rate(i) += t.change;
   }
 }
 

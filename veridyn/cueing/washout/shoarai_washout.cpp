@@ -56,10 +56,9 @@ ShoaraiWashout::ShoaraiWashout(const ShoaraiSettings& settings)
 const ShoaraiWashout::Pose& ShoaraiWashout::step(const Eigen::Vector3d& a, const Eigen::Vector3d& omega) {
   const Eigen::Vector3d felt = a + gravity_ - kGravity * Eigen::Vector3d::UnitZ();
   for (Eigen::Index i = 0; i < 3; ++i) {
-    const auto axis = static_cast<std::size_t>(i);
-    speed_(i) += settings_.step * shift_[axis].step(felt(i));
+    speed_(i) += settings_.step * shift_[i].step(felt(i));
     pose_.shift(i) += settings_.step * speed_(i);
-    turned_(i) += settings_.step * turn_[axis].step(omega(i));
+    turned_(i) += settings_.step * turn_[i].step(omega(i));
   }
   const auto leaning = [](double force) { return std::asin(std::clamp(force / kGravity, -1.0, 1.0)); };
   const double along = tilt_[0].step(a.x()), across = tilt_[1].step(a.y());

@@ -40,15 +40,14 @@ PlatformCommand ThreeAxisWashout::next(const VehicleMotion& motion, SampleStep s
   shared_.add_to(command, a, motion.rate, step);
   const Eigen::Vector2d force = tilted_force(motion.force);
   for (std::size_t i = 0; i < 2; ++i) {
-    const auto axis = static_cast<Eigen::Index>(i);
     const double most = design_.bound[1 - i];
-    const double f = std::clamp(design_.shared.force_gain[1 - i] * force(axis), -most, most);
+    const double f = std::clamp(design_.shared.force_gain[1 - i] * force(i), -most, most);
     const ChannelOutput onset =
         onset_[i].step(cueing::next(high_pass_[i], design_.instant * f, step), design_.onset_rate, step);
     const ChannelOutput slope =
         slope_[i].step(cueing::next(low_pass_[i], design_.sustained * f, step), design_.shared.tilt_rate, step);
-    command.angle(axis) += onset.place + slope.place;
-    command.rate(axis) += onset.change + slope.change;
+    command.angle(i) += onset.place + slope.place;
+    command.rate(i) += onset.change + slope.change;
   }
   return command;
 }

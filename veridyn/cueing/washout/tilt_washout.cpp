@@ -20,11 +20,10 @@ PlatformCommand TiltWashout::next(const VehicleMotion& motion, SampleStep step) 
   PlatformCommand command;
   const Eigen::Vector2d force = tilted_force(motion.force);
   for (std::size_t i = 0; i < 2; ++i) {
-    const auto axis = static_cast<Eigen::Index>(i);
-    const double lasting = cueing::next(low_pass_[i], design_.force_gain[1 - i] * force(axis), step);
+    const double lasting = cueing::next(low_pass_[i], design_.force_gain[1 - i] * force(i), step);
     const ChannelOutput t = tilt_[i].step(lasting, design_.tilt_rate, step);
-    command.angle(axis) = t.place;
-    command.rate(axis) = t.change;
+    command.angle(i) = t.place;
+    command.rate(i) = t.change;
   }
   return command;
 }

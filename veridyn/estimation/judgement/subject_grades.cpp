@@ -14,7 +14,7 @@ Grade grade_of(const StudyTable& grades, Purpose purpose) {
   std::vector<std::string> words;
   for (const Grade grade : kGrades) words.emplace_back(to_string(grade));
   const std::string word = grades.choice_or(to_string(purpose), words, to_string(Grade::kNotJudged));
-  return kGrades[static_cast<std::size_t>(std::ranges::find(words, word) - words.begin())];
+  return kGrades[std::ranges::find(words, word) - words.begin()];
 }
 
 /// `grade` of every purpose as a table.

@@ -40,7 +40,7 @@ RowMatrix sigmas(const OpenLoopResponse& response, const OpenLoopStart& start, c
     for (Index j = 0; j < states; ++j) {
       const double parameters = g.row(j).dot(problem.covariance * g.row(j).transpose());
       const double beginning = S.row(j).dot(start.covariance * S.row(j).transpose());
-      const auto [white, lasting] = problem.errors[at(j)];
+      const auto [white, lasting] = problem.errors[j];
       sigma(k, j) = std::sqrt(std::max(0.0, parameters) + std::max(0.0, beginning) + white * white + lasting * lasting);
     }
   }
@@ -63,7 +63,7 @@ OpenLoopForecast forecast(OpenLoopModel& model, std::size_t segment, const OpenL
   model.shorten(segment, std::max<Index>(1, integrated));
   std::size_t i = model.parameters().size();
   for (const ModelParameter& p : model.initial_conditions(segment))
-    window.start.push_back({segment, p.name, p.unit, start.theta(signed_index(i++))});
+    window.start.push_back({segment, p.name, p.unit, start.theta(i++)});
   const OpenLoopResponse response = open_loop_response(model, segment, start.theta, problem.covariance);
   const Index n = response.states.rows();
   out.measured = measured.topLeftCorner(n, states);
@@ -76,7 +76,7 @@ OpenLoopForecast forecast(OpenLoopModel& model, std::size_t segment, const OpenL
   for (Index j = 0; j < states; ++j) {
     const Index inside = samples_inside(out.predicted.col(j) - out.measured.col(j), out.sigma.col(j), from, ahead);
     window.horizon_s.push_back(interval * static_cast<double>(std::max<Index>(0, std::min(inside, n - 1) - from)));
-    if (problem.judged[at(j)]) window.first_left_s = std::min(window.first_left_s, window.horizon_s.back());
+    if (problem.judged[j]) window.first_left_s = std::min(window.first_left_s, window.horizon_s.back());
   }
   return out;
 }

@@ -22,7 +22,7 @@ OpenLoopResponse open_loop_response(const OpenLoopModel& model, std::size_t segm
                        .parameters = Eigen::MatrixXd::Zero(samples * states, shared),
                        .conditions = Eigen::MatrixXd::Zero(samples * states, own)};
   for (Index i = 0; i < std::ssize(active); ++i) {
-    const Index unknown = active[at(i)];
+    const Index unknown = active[i];
     auto column = unknown < shared ? out.parameters.col(unknown) : out.conditions.col(unknown - shared);
     for (Index k = 0; k < samples; ++k)
       column.segment(k * states, states) = all.sensitivity.col(i).segment(k * outputs, states);

@@ -29,7 +29,7 @@ OpenLoopState scored(const ModelOutput& output, const std::string& group, std::s
     horizons.push_back(horizon);
     if (!f.window.diverged && f.window.forecast_from + horizon >= f.window.span.end - 1e-6) ++state.held;
     for (Eigen::Index k = 0; k < f.measured.rows(); ++k) {
-      const double t = f.time[at(k)];
+      const double t = f.time[k];
       const bool is_forecast = t >= f.window.forecast_from;
       state.time.push_back(t + f.shift_s);
       state.measured.push_back(f.measured(k, j));

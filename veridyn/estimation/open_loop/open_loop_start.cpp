@@ -28,7 +28,7 @@ void add_covariance(const OpenLoopModel& model, std::size_t segment, const Eigen
   const auto shared = signed_index(model.parameters().size()), own = start.theta.size() - shared;
   const std::span<const ModelParameter> conditions = model.initial_conditions(segment);
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(own, own), cross = Eigen::MatrixXd::Zero(own, shared);
-  for (Index i = 0; i < own; ++i) information(i, i) = std::pow(conditions[at(i)].prior_sigma, -2.0);
+  for (Index i = 0; i < own; ++i) information(i, i) = std::pow(conditions[i].prior_sigma, -2.0);
   const OpenLoopResponse r = open_loop_response(model, segment, start.theta, problem.covariance);
   if (r.states.rows() > 0) {
     for (const Index k : rows) {
@@ -41,8 +41,8 @@ void add_covariance(const OpenLoopModel& model, std::size_t segment, const Eigen
   start.covariance = solver.solve(Eigen::MatrixXd::Identity(own, own));
   start.with_parameters = -solver.solve(cross);
   for (Index i = 0; i < own; ++i)
-    if (std::ranges::find(problem.drifting, conditions[at(i)].name) != problem.drifting.end())
-      start.covariance(i, i) += std::pow(conditions[at(i)].prior_sigma, 2.0);
+    if (std::ranges::find(problem.drifting, conditions[i].name) != problem.drifting.end())
+      start.covariance(i, i) += std::pow(conditions[i].prior_sigma, 2.0);
 }
 
 }  // namespace
@@ -69,13 +69,13 @@ std::vector<OpenLoopStart> open_loop_starts(OpenLoopModel& first, const OpenLoop
   OutputErrorOptions fit;
   fit.noise = OutputNoise::kGiven;
   fit.covariance = CovarianceKind::kWhite;
-  fit.noise_start = Eigen::VectorXd::Ones(signed_index(first.outputs().size()));
+  fit.noise_start = Eigen::VectorXd::Ones(first.outputs().size());
   for (std::size_t j = 0; j < problem.errors.size(); ++j)
-    fit.noise_start(signed_index(j)) =
+    fit.noise_start(j) =
         std::hypot(problem.errors[j].white, problem.errors[j].lasting * std::sqrt(static_cast<double>(most)));
   const OutputErrorEstimate fitted = output_error(first, measured, fit, progress);
   if (fitted.has_estimate()) {
-    std::vector<Index> place(first.segments(), signed_index(first.parameters().size()));
+    std::vector<Index> place(first.segments(), first.parameters().size());
     for (const SegmentParameter& p : fitted.segment_parameters) starts[p.segment].theta(place[p.segment]++) = p.value;
   }
   const Eigen::VectorXd weights = fit.noise_start.head(states).cwiseAbs2().cwiseInverse();

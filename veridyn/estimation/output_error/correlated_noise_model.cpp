@@ -90,7 +90,7 @@ std::optional<Linearised> linearised(const ParametricModel& model, const std::ve
       part(r, out.unknowns) =
           (measured[s](r / outputs, r % outputs) - response.output(r / outputs, r % outputs)) / sigma(r % outputs);
     for (std::size_t i = 0; i < of_segment.active.size(); ++i) {
-      Eigen::VectorXd column = response.sensitivity.col(signed_index(i));
+      Eigen::VectorXd column = response.sensitivity.col(i);
       for (Index r = 0; r < rows; ++r) column(r) /= sigma(r % outputs);
       const double norm = column.norm(), prior = of_segment.of[i]->prior_sigma;
       const bool known = std::isfinite(prior);

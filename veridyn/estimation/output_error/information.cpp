@@ -1,6 +1,5 @@
 #include "veridyn/estimation/output_error/information.hpp"
 
-#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/output_error/output_error_problem.hpp"
 #include "veridyn/numerics/linear_algebra/cholesky.hpp"
 
@@ -11,7 +10,7 @@ std::optional<RowMatrix> information_root(const ParametricModel& model, OutputEr
   options.validate(model);
   std::vector<RowMatrix> measured;
   for (std::size_t s = 0; s < model.segments(); ++s)
-    measured.emplace_back(RowMatrix::Zero(model.samples(s), signed_index(model.outputs().size())));
+    measured.emplace_back(RowMatrix::Zero(model.samples(s), model.outputs().size()));
   internal::OutputErrorProblem problem(model, measured, options);
   problem.start_noise();
   problem.evaluate(true);

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
 
 namespace veridyn::estimation {

@@ -68,7 +68,7 @@ bool LoggedModel::respond(std::size_t segment, const Eigen::VectorXd& theta, std
 void LoggedModel::note(std::size_t segment, const Eigen::VectorXd& theta, bool derivatives, bool finished,
                        double seconds, const ModelResponse& response) const {
   const double misfit = finished ? misfit_(segment, response.output) : kNaN;
-  const auto shared = theta.head(signed_index(parameters().size()));
+  const auto shared = theta.head(parameters().size());
   const std::lock_guard lock(mutex_);
   const auto [found, fresh] =
       place_.try_emplace({std::vector<double>(shared.begin(), shared.end()), derivatives}, evaluations_.size());

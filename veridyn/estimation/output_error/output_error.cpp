@@ -126,7 +126,7 @@ class Estimation {
     ceres::Problem ceres_problem(problem_options);
     double* shared = problem_.shared_block();
     const auto bound = [&](double* block, const std::vector<const ModelParameter*>& unknowns) {
-      Eigen::VectorXd start(static_cast<Index>(unknowns.size())), root(start.size());
+      Eigen::VectorXd start(unknowns.size()), root(start.size());
       for (std::size_t i = 0; i < unknowns.size(); ++i) {
         const ModelParameter& p = *unknowns[i];
         const auto at = static_cast<int>(i);
@@ -208,7 +208,7 @@ class Estimation {
       Parameter& p = result_.parameters[i];
       p.name = parameters[i].name;
       p.unit = parameters[i].unit;
-      p.value = result_.theta(static_cast<Index>(i));
+      p.value = result_.theta(i);
       p.sigma = p.sigma_white = parameters[i].fixed ? 0.0 : kInfinity;
       p.low95 = p.value - p.sigma;
       p.high95 = p.value + p.sigma;
@@ -224,8 +224,8 @@ class Estimation {
     for (std::size_t s = 0; s < problem_.segments(); ++s) {
       result_.predicted.push_back(problem_.predicted(s));
       for (std::size_t i = 0; i < problem_.local_names(s).size(); ++i) {
-        result_.segment_parameters.push_back({s, problem_.local_names(s)[i], problem_.local_units(s)[i],
-                                              problem_.local_block(s)[static_cast<Index>(i)]});
+        result_.segment_parameters.push_back(
+            {s, problem_.local_names(s)[i], problem_.local_units(s)[i], problem_.local_block(s)[i]});
       }
     }
     result_.outputs = problem_.output_fits();
@@ -255,8 +255,7 @@ class Estimation {
       const double sigma = unknowns[i]->prior_sigma;
       if (!std::isfinite(sigma)) continue;
       root.conservativeResize(root.rows() + 1, Eigen::NoChange);
-      root.row(root.rows() - 1) =
-          Eigen::RowVectorXd::Unit(static_cast<Index>(unknowns.size()), static_cast<Index>(i)) / sigma;
+      root.row(root.rows() - 1) = Eigen::RowVectorXd::Unit(unknowns.size(), static_cast<Index>(i)) / sigma;
     }
     return root;
   }
@@ -299,7 +298,7 @@ class Estimation {
       Eigen::VectorXd combination = svd.V.col(j).cwiseProduct(unit);
       combination /= combination.norm();
       Eigen::VectorXd all = Eigen::VectorXd::Zero(result_.theta.size());
-      for (Index i = 0; i < n; ++i) all(free[static_cast<std::size_t>(i)]) = combination(i);
+      for (Index i = 0; i < n; ++i) all(free[i]) = combination(i);
       result_.unidentifiable.push_back({all, kInfinity, describe_combination(combination, names)});
       if (held) result_.held.push_back(result_.unidentifiable.back());
     }
@@ -315,7 +314,7 @@ class Estimation {
     // The prior's own error is white: its information enters as it is.
     const auto unknowns = problem_.shared_unknowns();
     for (Index i = 0; i < filling.rows(); ++i) {
-      const double sigma = unknowns[static_cast<std::size_t>(i)]->prior_sigma;
+      const double sigma = unknowns[i]->prior_sigma;
       if (std::isfinite(sigma)) filling(i, i) += 1.0 / (sigma * sigma);
     }
     result_.degrees_of_freedom = std::min(result_.degrees_of_freedom, spectrum.degrees_of_freedom);
@@ -342,7 +341,7 @@ class Estimation {
     const Eigen::MatrixXd chosen = autocorrelated ? corrected_for_autocorrelation(white) : white;
     for (Index i = 0; i < n; ++i) {
       for (Index j = 0; j < n; ++j) {
-        const Index a = free[static_cast<std::size_t>(i)], b = free[static_cast<std::size_t>(j)];
+        const Index a = free[i], b = free[j];
         const bool known = share(i) <= kShareWithoutErrorBar && share(j) <= kShareWithoutErrorBar;
         const double otherwise = i == j ? kInfinity : 0.0;
         result_.covariance(a, b) = known ? (autocorrelated ? inflation : white_inflation) * chosen(i, j) : otherwise;
@@ -351,15 +350,15 @@ class Estimation {
     }
     const auto unknowns = problem_.shared_unknowns();
     for (Index i = 0; i < n; ++i) {
-      const Index a = free[static_cast<std::size_t>(i)];
-      Parameter& p = result_.parameters[static_cast<std::size_t>(a)];
+      const Index a = free[i];
+      Parameter& p = result_.parameters[a];
       p.sigma = std::sqrt(std::max(0.0, result_.covariance(a, a)));
       p.sigma_white = std::sqrt(std::max(0.0, result_.covariance_white(a, a)));
       set_interval(p, result_.degrees_of_freedom);
       p.unexcited_share = std::min(1.0, share(i));
       const double l = information->length(i);
       p.variance_inflation = std::max(1.0, white(i, i) * l * l);
-      const double prior = unknowns[static_cast<std::size_t>(i)]->prior_sigma;
+      const double prior = unknowns[i]->prior_sigma;
       if (std::isfinite(prior))
         result_.learned_share(a) = std::clamp(1.0 - p.sigma_white * p.sigma_white / (prior * prior), 0.0, 1.0);
       if (!std::isfinite(p.sigma)) {
@@ -369,7 +368,7 @@ class Estimation {
       }
       p.status = p.p_value < options_.significance ? ParameterStatus::kIdentified : ParameterStatus::kInsignificant;
       if (result_.learned_share(a) < 0.1) p.status = ParameterStatus::kNotExcited;
-      if (ends_at_bound(p.value, *unknowns[static_cast<std::size_t>(i)])) p.status = ParameterStatus::kAtBound;
+      if (ends_at_bound(p.value, *unknowns[i])) p.status = ParameterStatus::kAtBound;
     }
   }
 

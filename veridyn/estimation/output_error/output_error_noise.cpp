@@ -5,7 +5,6 @@
 #include <cmath>
 #include <vector>
 
-#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/output_error/output_error_problem.hpp"
 #include "veridyn/numerics/linear_algebra/cholesky.hpp"
 #include "veridyn/numerics/linear_algebra/products.hpp"

@@ -7,7 +7,6 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/regression/augmented_qr.hpp"
 #include "veridyn/numerics/linear_algebra/cholesky.hpp"
 #include "veridyn/numerics/linear_algebra/orthogonal.hpp"
@@ -45,7 +44,7 @@ void check_search_start(std::span<const ModelParameter> parameters, const Eigen:
     throw InputError("output_error.search_start",
                      fmt::format("has {} values for {} parameters", from.size(), parameters.size()));
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const double value = from(static_cast<Index>(i));
+    const double value = from(i);
     if (!(value >= parameters[i].low && value <= parameters[i].high))
       throw InputError("output_error.search_start", fmt::format("{} is {}; must be in [{}, {}]", parameters[i].name,
                                                                 value, parameters[i].low, parameters[i].high));
@@ -65,19 +64,19 @@ OutputErrorProblem::OutputErrorProblem(const ParametricModel& model, const std::
   const auto parameters = model.parameters();
   check_parameters(parameters, "parameters");
   check_search_start(parameters, options.search_start);
-  all_shared_.resize(static_cast<Index>(parameters.size()));
+  all_shared_.resize(parameters.size());
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    all_shared_(static_cast<Index>(i)) = parameters[i].start;
+    all_shared_(i) = parameters[i].start;
     if (parameters[i].fixed) continue;
     free_shared_.push_back(static_cast<Index>(i));
-    if (options.search_start.size() > 0) all_shared_(signed_index(i)) = options.search_start(signed_index(i));
+    if (options.search_start.size() > 0) all_shared_(i) = options.search_start(i);
   }
-  shared_.resize(static_cast<Index>(free_shared_.size()));
-  for (std::size_t i = 0; i < free_shared_.size(); ++i) shared_(static_cast<Index>(i)) = all_shared_(free_shared_[i]);
+  shared_.resize(free_shared_.size());
+  for (std::size_t i = 0; i < free_shared_.size(); ++i) shared_(i) = all_shared_(free_shared_[i]);
 
   const auto outputs = model.outputs();
   for (Index j = 0; j < outputs_; ++j) {
-    const ModelOutput& output = outputs[static_cast<std::size_t>(j)];
+    const ModelOutput& output = outputs[j];
     const auto& wanted = options.output_biases;
     if (std::find(wanted.begin(), wanted.end(), output.name) == wanted.end()) continue;
     biased_.push_back(j);
@@ -94,14 +93,14 @@ OutputErrorProblem::OutputErrorProblem(const ParametricModel& model, const std::
     Segment segment;
     const auto initial = model.initial_conditions(s);
     check_parameters(initial, "initial_conditions");
-    segment.initial.resize(static_cast<Index>(initial.size()));
+    segment.initial.resize(initial.size());
     for (std::size_t i = 0; i < initial.size(); ++i) {
-      segment.initial(static_cast<Index>(i)) = initial[i].start;
+      segment.initial(i) = initial[i].start;
       if (options.free_initial_conditions && !initial[i].fixed) segment.free_initial.push_back(static_cast<Index>(i));
     }
-    segment.local = Eigen::VectorXd::Zero(static_cast<Index>(segment.free_initial.size() + biased_.size()));
+    segment.local = Eigen::VectorXd::Zero(segment.free_initial.size() + biased_.size());
     for (std::size_t i = 0; i < segment.free_initial.size(); ++i) {
-      segment.local(static_cast<Index>(i)) = segment.initial(segment.free_initial[i]);
+      segment.local(i) = segment.initial(segment.free_initial[i]);
       segment.active.push_back(all_shared_.size() + segment.free_initial[i]);
     }
     segment.active.insert(segment.active.end(), free_shared_.begin(), free_shared_.end());
@@ -109,9 +108,9 @@ OutputErrorProblem::OutputErrorProblem(const ParametricModel& model, const std::
     for (Index k = 0; k < z.rows(); ++k) {
       for (Index j = 0; j < outputs_; ++j) {
         if (std::isinf(z(k, j))) {
-          throw InputError(fmt::format("output_error.measured: {}", model.segment_name(s)),
-                           fmt::format("output {} of sample {} is infinite; a missing value is NaN",
-                                       outputs[static_cast<std::size_t>(j)].name, k));
+          throw InputError(
+              fmt::format("output_error.measured: {}", model.segment_name(s)),
+              fmt::format("output {} of sample {} is infinite; a missing value is NaN", outputs[j].name, k));
         }
         if (std::isnan(z(k, j))) continue;
         ++values_;
@@ -139,14 +138,13 @@ Index OutputErrorProblem::all_unknowns() const {
 
 std::vector<const ModelParameter*> OutputErrorProblem::shared_unknowns() const {
   std::vector<const ModelParameter*> unknowns;
-  for (const Index i : free_shared_) unknowns.push_back(&model_.parameters()[static_cast<std::size_t>(i)]);
+  for (const Index i : free_shared_) unknowns.push_back(&model_.parameters()[i]);
   return unknowns;
 }
 
 std::vector<const ModelParameter*> OutputErrorProblem::local_unknowns(std::size_t s) const {
   std::vector<const ModelParameter*> unknowns;
-  for (const Index i : segments_[s].free_initial)
-    unknowns.push_back(&model_.initial_conditions(s)[static_cast<std::size_t>(i)]);
+  for (const Index i : segments_[s].free_initial) unknowns.push_back(&model_.initial_conditions(s)[i]);
   for (const ModelParameter& bias : bias_parameters_) unknowns.push_back(&bias);
   return unknowns;
 }
@@ -165,7 +163,7 @@ std::vector<std::string> OutputErrorProblem::local_units(std::size_t s) const {
 
 Eigen::VectorXd OutputErrorProblem::full_shared() const {
   Eigen::VectorXd all = all_shared_;
-  for (std::size_t i = 0; i < free_shared_.size(); ++i) all(free_shared_[i]) = shared_(static_cast<Index>(i));
+  for (std::size_t i = 0; i < free_shared_.size(); ++i) all(free_shared_[i]) = shared_(i);
   return all;
 }
 
@@ -173,7 +171,7 @@ Eigen::VectorXd OutputErrorProblem::theta_of(const Segment& segment) const {
   Eigen::VectorXd theta(all_shared_.size() + segment.initial.size());
   theta << full_shared(), segment.initial;
   for (std::size_t i = 0; i < segment.free_initial.size(); ++i)
-    theta(all_shared_.size() + segment.free_initial[i]) = segment.local(static_cast<Index>(i));
+    theta(all_shared_.size() + segment.free_initial[i]) = segment.local(i);
   return theta;
 }
 
@@ -221,8 +219,7 @@ void OutputErrorProblem::linearise(std::size_t s, bool derivatives, const ModelR
   const auto initial = static_cast<Index>(segment.free_initial.size());
   const auto biases = static_cast<Index>(biased_.size());
   predicted = response.output;
-  for (Index b = 0; b < biases; ++b)
-    predicted.col(biased_[static_cast<std::size_t>(b)]).array() += segment.local(initial + b);
+  for (Index b = 0; b < biases; ++b) predicted.col(biased_[b]).array() += segment.local(initial + b);
   residual = z - predicted;
   const Index n = derivatives ? segment.local.size() + shared_.size() : 0;
   rows = RowMatrix::Zero(z.rows() * outputs_, n + 1);
@@ -234,7 +231,7 @@ void OutputErrorProblem::linearise(std::size_t s, bool derivatives, const ModelR
       row.head(initial) = -response.sensitivity.row(k * outputs_ + j).head(initial);
       row.segment(initial + biases, shared_.size()) = -response.sensitivity.row(k * outputs_ + j).tail(shared_.size());
       for (Index b = 0; b < biases; ++b)
-        if (biased_[static_cast<std::size_t>(b)] == j) row(initial + b) = -1.0;
+        if (biased_[b] == j) row(initial + b) = -1.0;
     }
   }
   whiten(residual, rows);
@@ -267,12 +264,11 @@ void OutputErrorProblem::whiten(const RowMatrix& residual, RowMatrix& rows) cons
     block.resize(count, rows.cols());
     Eigen::MatrixXd part(count, count);
     for (Index a = 0; a < count; ++a) {
-      block.row(a) = all.row(seen[static_cast<std::size_t>(a)]);
-      for (Index b = 0; b < count; ++b)
-        part(a, b) = noise_(seen[static_cast<std::size_t>(a)], seen[static_cast<std::size_t>(b)]);
+      block.row(a) = all.row(seen[a]);
+      for (Index b = 0; b < count; ++b) part(a, b) = noise_(seen[a], seen[b]);
     }
     block = numerics::Cholesky(part).solve_lower(block);
-    for (Index a = 0; a < count; ++a) all.row(seen[static_cast<std::size_t>(a)]) = block.row(a);
+    for (Index a = 0; a < count; ++a) all.row(seen[a]) = block.row(a);
   }
 }
 
@@ -315,7 +311,7 @@ bool OutputErrorProblem::valid() const {
 bool OutputErrorProblem::reaches_bounds() const {
   const std::vector<const ModelParameter*> unknowns = shared_unknowns();
   for (std::size_t i = 0; i < unknowns.size(); ++i)
-    if (is_at_bound(shared_(signed_index(i)), *unknowns[i])) return true;
+    if (is_at_bound(shared_(i), *unknowns[i])) return true;
   return false;
 }
 
@@ -324,7 +320,7 @@ std::vector<int> OutputErrorProblem::pressed_on_bounds() const {
   if (options_.hold_undetermined) return pressed;
   const std::vector<const ModelParameter*> unknowns = shared_unknowns();
   for (Index i = 0; i < shared_.size(); ++i) {
-    const ModelParameter& p = *unknowns[at(i)];
+    const ModelParameter& p = *unknowns[i];
     if (!is_at_bound(shared_(i), p)) continue;
     double slope = std::isfinite(p.prior_sigma) ? (shared_(i) - p.start) / (p.prior_sigma * p.prior_sigma) : 0.0;
     for (const Segment& s : segments_) {
@@ -401,7 +397,7 @@ Eigen::MatrixXd OutputErrorProblem::spectral_filling(const ResidualSpectrum& spe
 std::vector<OutputFit> OutputErrorProblem::output_fits() const {
   std::vector<OutputFit> fits;
   for (Index j = 0; j < outputs_; ++j) {
-    const ModelOutput& output = model_.outputs()[static_cast<std::size_t>(j)];
+    const ModelOutput& output = model_.outputs()[j];
     std::vector<double> measured, predicted;
     double lagged = 0.0, power = 0.0;
     for (std::size_t s = 0; s < segments_.size(); ++s) {

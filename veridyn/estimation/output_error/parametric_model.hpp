@@ -118,13 +118,13 @@ class AutodiffModel : public Base {
     JetMatrix output(N, p);
     for (const Pass& pass : passes(active)) {
       for (Eigen::Index i = 0; i < theta.size(); ++i) jets(i) = Jet(theta(i));
-      for (std::size_t j = 0; j < pass.columns.size(); ++j) jets(active[at(pass.columns[j])]).v(signed_index(j)) = 1.0;
+      for (std::size_t j = 0; j < pass.columns.size(); ++j) jets(active[pass.columns[j]]).v(j) = 1.0;
       if (!run(pass, segment, jets, output)) return false;
       for (Eigen::Index k = 0; k < N; ++k) {
         for (Eigen::Index j = 0; j < p; ++j) {
           if (!pass.transient) response.output(k, j) = output(k, j).a;
           for (std::size_t i = 0; i < pass.columns.size(); ++i)
-            response.sensitivity(k * p + j, pass.columns[i]) = output(k, j).v(signed_index(i));
+            response.sensitivity(k * p + j, pass.columns[i]) = output(k, j).v(i);
         }
       }
     }
@@ -158,7 +158,7 @@ class AutodiffModel : public Base {
     for (const bool transient : {false, true}) {
       bool full = true;
       for (Eigen::Index i = 0; i < all; ++i) {
-        if ((apart && is_initial(active[at(i)])) != transient) continue;
+        if ((apart && is_initial(active[i])) != transient) continue;
         if (full) out.push_back({.columns = {}, .transient = transient});
         out.back().columns.push_back(i);
         full = out.back().columns.size() == kStride;

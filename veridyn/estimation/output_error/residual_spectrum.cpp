@@ -90,14 +90,13 @@ ResidualSpectrum residual_spectrum(const std::vector<RowMatrix>& residuals, Eige
       std::fill(sequence.begin(), sequence.end(), 0.0);
       for (Eigen::Index lag = 0; lag < lags && lag < longest; ++lag) {
         const double weight = lag == 0 ? 1.0 : flat_top_weight(lag, w);
-        sequence[static_cast<std::size_t>(lag)] += weight * lagged_covariance(residuals, a, b, lag, total);
-        if (lag > 0)
-          sequence[static_cast<std::size_t>(L - lag)] += weight * lagged_covariance(residuals, b, a, lag, total);
+        sequence[lag] += weight * lagged_covariance(residuals, a, b, lag, total);
+        if (lag > 0) sequence[L - lag] += weight * lagged_covariance(residuals, b, a, lag, total);
       }
       fft.fwd(transform, sequence);
       for (Eigen::Index f = 0; f < half; ++f) {
-        auto& density = result.density[static_cast<std::size_t>(f)];
-        density(a, b) = transform[static_cast<std::size_t>(f)];
+        auto& density = result.density[f];
+        density(a, b) = transform[f];
         density(b, a) = std::conj(density(a, b));
       }
     }
@@ -122,19 +121,17 @@ Eigen::MatrixXd autocorrelated_information(const ResidualSpectrum& spectrum, con
   for (Eigen::Index j = 0; j < outputs; ++j) {
     for (Eigen::Index i = 0; i < n; ++i) {
       std::fill(sequence.begin(), sequence.end(), 0.0);
-      for (Eigen::Index k = 0; k < N; ++k) sequence[static_cast<std::size_t>(k)] = sensitivity(k * outputs + j, i);
+      for (Eigen::Index k = 0; k < N; ++k) sequence[k] = sensitivity(k * outputs + j, i);
       fft.fwd(transform, sequence);
-      for (Eigen::Index f = 0; f < half; ++f)
-        transformed[static_cast<std::size_t>(j)](f, i) = transform[static_cast<std::size_t>(f)];
+      for (Eigen::Index f = 0; f < half; ++f) transformed[j](f, i) = transform[f];
     }
   }
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(n, n);
   Eigen::MatrixXcd rows(outputs, n);
   for (Eigen::Index f = 0; f < half; ++f) {
-    for (Eigen::Index j = 0; j < outputs; ++j) rows.row(j) = transformed[static_cast<std::size_t>(j)].row(f);
+    for (Eigen::Index j = 0; j < outputs; ++j) rows.row(j) = transformed[j].row(f);
     const double twice = f == 0 || (f == half - 1 && L % 2 == 0) ? 1.0 : 2.0;
-    result +=
-        twice / static_cast<double>(L) * (rows.adjoint() * spectrum.density[static_cast<std::size_t>(f)] * rows).real();
+    result += twice / static_cast<double>(L) * (rows.adjoint() * spectrum.density[f] * rows).real();
   }
   return 0.5 * (result + result.transpose());
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/linear_algebra/singular_values.hpp"
 
 namespace veridyn::estimation::internal {
@@ -34,9 +33,9 @@ class HoldCost : public ceres::CostFunction {
 }  // namespace
 
 Eigen::VectorXd bound_sigmas(const std::vector<const ModelParameter*>& unknowns) {
-  Eigen::VectorXd sigma(signed_index(unknowns.size()));
+  Eigen::VectorXd sigma(unknowns.size());
   for (Eigen::Index i = 0; i < sigma.size(); ++i) {
-    const ModelParameter& p = *unknowns[at(i)];
+    const ModelParameter& p = *unknowns[i];
     sigma(i) = (p.high - p.low) / std::sqrt(12.0);
   }
   return sigma;
@@ -61,8 +60,8 @@ void hold_undetermined(ceres::Problem& problem, double* x, const std::vector<con
                        const RowMatrix& information_root) {
   RowMatrix rows = undetermined_rows(unknowns, information_root);
   if (rows.rows() == 0) return;
-  Eigen::VectorXd start(signed_index(unknowns.size()));
-  for (std::size_t i = 0; i < unknowns.size(); ++i) start(static_cast<Eigen::Index>(i)) = unknowns[i]->start;
+  Eigen::VectorXd start(unknowns.size());
+  for (std::size_t i = 0; i < unknowns.size(); ++i) start(i) = unknowns[i]->start;
   problem.AddResidualBlock(new HoldCost(std::move(rows), std::move(start)), nullptr, x);
 }
 

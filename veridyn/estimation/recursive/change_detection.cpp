@@ -22,10 +22,10 @@ double chain_run_length(const Distribution& F, double reference, double threshol
   Eigen::MatrixXd A = Eigen::MatrixXd::Identity(count, count);
   std::vector<double> edge(at(2 * count));
   // F between states depends on their difference only.
-  for (int d = -count; d < count; ++d) edge[at(d + count)] = F(reference + (d + 0.5) * step);
+  for (int d = -count; d < count; ++d) edge[d + count] = F(reference + (d + 0.5) * step);
   for (int i = 0; i < count; ++i) {
-    A(i, 0) -= edge[at(-i + count)];
-    for (int j = 1; j < count; ++j) A(i, j) -= edge[at(j - i + count)] - edge[at(j - i - 1 + count)];
+    A(i, 0) -= edge[-i + count];
+    for (int j = 1; j < count; ++j) A(i, j) -= edge[j - i + count] - edge[j - i - 1 + count];
   }
   const Eigen::VectorXd length = numerics::solve_linear(A, Eigen::VectorXd(Eigen::VectorXd::Ones(count)));
   return length(0) > 0.0 ? length(0) : 1e15;

@@ -28,9 +28,9 @@ SmallMatrix sandwich(const SmallMatrix& A, const SmallMatrix& S) {
     for (Eigen::Index k = 0; k < n; ++k) {
       const double a = A(k, j);
       const double* s = S.data() + k * n;
-      for (Eigen::Index i = 0; i < n; ++i) column[at(i)] += a * s[i];
+      for (Eigen::Index i = 0; i < n; ++i) column[i] += a * s[i];
     }
-    for (Eigen::Index i = 0; i < n; ++i) half(i, j) = column[at(i)];
+    for (Eigen::Index i = 0; i < n; ++i) half(i, j) = column[i];
   }
   for (Eigen::Index j = 0; j < n; ++j) {
     for (Eigen::Index i = 0; i <= j; ++i) {
@@ -141,7 +141,7 @@ void RecursiveRegression::State::add_unexcited_bound(const SmallMatrix& jacobian
   const Eigen::Index n = count();
   double largest = 1.0;
   for (Eigen::Index i = 0; i < n; ++i) {
-    largest = std::max(largest, std::abs(free_weight(i) * (free_theta(i) - prior(free[at(i)]))));
+    largest = std::max(largest, std::abs(free_weight(i) * (free_theta(i) - prior(free[i]))));
   }
   const double least = options.unexcited_bound > 0.0 ? options.unexcited_bound : kAutomaticBound * largest;
   // GTLS over all directions, where there is one: its error bar is a lower limit of the bound.
@@ -228,7 +228,7 @@ void RecursiveRegression::State::compute_error_bars(CovarianceKind kind, interna
         S = (1.0 - trust) * S + (trust * whole * long_correlation(inverse)) * scores.sum();
         leading *= 1.0 - trust;
         for (Eigen::Index j = 0; j < n; ++j) {
-          double& of_one = result.freedom(free[at(j)]);
+          double& of_one = result.freedom(free[j]);
           of_one = std::min(freedom, std::max(1.0, scores.blocks_behind(inverse.col(j).data())));
           result.degrees_of_freedom = std::min(result.degrees_of_freedom, of_one);
         }
@@ -241,9 +241,9 @@ void RecursiveRegression::State::compute_error_bars(CovarianceKind kind, interna
   }
   if (good) {
     for (Eigen::Index j = 0; j < n; ++j) {
-      const Eigen::Index to = free[at(j)];
+      const Eigen::Index to = free[j];
       for (Eigen::Index i = 0; i < n; ++i) {
-        const Eigen::Index from = free[at(i)];
+        const Eigen::Index from = free[i];
         result.covariance(from, to) = excited(i, j) + bound(i, j);
       }
       good = good && std::isfinite(result.covariance(to, to));
@@ -311,7 +311,7 @@ void RecursiveRegression::State::add_collinearity(RegressionEstimate& result) co
     const Eigen::VectorXd column = scaled.col(j);
     const double left = (column - others * numerics::shortest_least_squares(others, column)).squaredNorm();
     const double all = has_constant ? spread(j) : 1.0;
-    result.parameters[at(free[at(j)])].variance_inflation = left > 0.0 ? std::max(1.0, all / left) : kInfinity;
+    result.parameters[free[j]].variance_inflation = left > 0.0 ? std::max(1.0, all / left) : kInfinity;
   }
 }
 
@@ -335,7 +335,7 @@ RegressionEstimate RecursiveRegression::State::estimate(double significance) con
   result.excited_directions = excited_directions;
   for (Eigen::Index i = 0; i < all; ++i) {
     Parameter p;
-    p.name = names[at(i)];
+    p.name = names[i];
     p.value = theta(i);
     p.sigma = known.sigma(i);
     p.sigma_white = white.sigma(i);

@@ -40,7 +40,7 @@ void RecursiveOptions::validate(Eigen::Index parameters) const {
 }
 
 RecursiveRegression::RecursiveRegression(std::vector<std::string> names, RecursiveOptions options) {
-  options.validate(signed_index(names.size()));
+  options.validate(names.size());
   std::set<std::string> seen;
   for (const std::string& name : names) {
     if (!seen.insert(name).second) throw InputError("recursive", fmt::format("two parameters are named '{}'", name));

@@ -28,7 +28,7 @@ SmallMatrix error_covariance_of(const RecursiveOptions& options, Eigen::Index pa
   // [X, z] P = [X_free, z - X_pinned theta_0]
   const auto count = signed_index(free.size());
   Eigen::MatrixXd P = Eigen::MatrixXd::Zero(parameters + 1, count + 1);
-  for (Eigen::Index j = 0; j < count; ++j) P(free[at(j)], j) = 1.0;
+  for (Eigen::Index j = 0; j < count; ++j) P(free[j], j) = 1.0;
   P(parameters, count) = 1.0;
   for (const Eigen::Index i : pinned) P(i, count) = -prior(i);
   return P.transpose() * W * P;
@@ -53,18 +53,18 @@ SmallVector prior_of(const RecursiveOptions& options, Eigen::Index parameters) {
 RecursiveRegression::State::State(std::vector<std::string> parameter_names, RecursiveOptions recursive_options)
     : names(std::move(parameter_names)),
       options(std::move(recursive_options)),
-      free(indices(options, signed_index(names.size()), false)),
-      pinned(indices(options, signed_index(names.size()), true)),
-      prior(prior_of(options, signed_index(names.size()))),
-      W(error_covariance_of(options, signed_index(names.size()), free, pinned, prior)),
+      free(indices(options, names.size(), false)),
+      pinned(indices(options, names.size(), true)),
+      prior(prior_of(options, names.size())),
+      W(error_covariance_of(options, names.size(), free, pinned, prior)),
       forgets(options.forgetting.lambda < 1.0 || options.forgetting.variable),
       data(W),
-      variable(options.forgetting, signed_index(free.size())) {
+      variable(options.forgetting, free.size()) {
   const Eigen::Index n = count();
   free_weight = SmallVector::Ones(n);
   free_theta.resize(n);
   for (Eigen::Index j = 0; j < n; ++j) {
-    const Eigen::Index i = free[at(j)];
+    const Eigen::Index i = free[j];
     free_theta(j) = prior(i);
     if (options.method == Method::kPcaGtls && options.prior_weight.size() > 0) free_weight(j) = options.prior_weight(i);
   }
@@ -89,8 +89,8 @@ void RecursiveRegression::State::start(const Eigen::VectorXd& theta_0, const Eig
   Eigen::MatrixXd P(n, n);
   Eigen::VectorXd start_theta(n);
   for (Eigen::Index j = 0; j < n; ++j) {
-    start_theta(j) = theta_0(free[at(j)]);
-    for (Eigen::Index i = 0; i < n; ++i) P(i, j) = P_0(free[at(i)], free[at(j)]);
+    start_theta(j) = theta_0(free[j]);
+    for (Eigen::Index i = 0; i < n; ++i) P(i, j) = P_0(free[i], free[j]);
   }
   const Eigen::VectorXd sd = P.diagonal().cwiseSqrt();
   Eigen::MatrixXd correlation = P;
@@ -110,8 +110,8 @@ void RecursiveRegression::State::start(const Eigen::VectorXd& theta_0, const Eig
   const Eigen::MatrixXd root = c_0 * cholesky.matrixL().solve(scaled);
   internal::RecursiveRow row{};
   for (Eigen::Index i = 0; i < n; ++i) {
-    for (Eigen::Index j = 0; j < n; ++j) row[at(j)] = root(i, j);
-    row[at(n)] = root.row(i).dot(start_theta);
+    for (Eigen::Index j = 0; j < n; ++j) row[j] = root(i, j);
+    row[n] = root.row(i).dot(start_theta);
     if (!data.append(row.data(), 1.0))
       throw InputError("recursive.start", "P_0 is too small or theta_0 too large for a computation");
   }
@@ -123,7 +123,7 @@ void RecursiveRegression::State::start(const Eigen::VectorXd& theta_0, const Eig
   const Eigen::MatrixXd information = root.transpose() * root;
   squares = information;
   scores.start(c_0 * c_0 * information, information, prior_rows);
-  for (Eigen::Index j = 0; j < n; ++j) theta(free[at(j)]) = free_theta(j);
+  for (Eigen::Index j = 0; j < n; ++j) theta(free[j]) = free_theta(j);
   solve();
   most_excited = excited_directions;
 }
@@ -139,7 +139,7 @@ void RecursiveRegression::State::set_equation_error(double variance) {
   data = RecursiveTotalLeastSquares(W);
   internal::RecursiveRow row{};
   for (Eigen::Index i = 0; i <= n; ++i) {
-    for (Eigen::Index j = 0; j <= n; ++j) row[at(j)] = A(i, j);
+    for (Eigen::Index j = 0; j <= n; ++j) row[j] = A(i, j);
     (void)data.append(row.data(), 1.0);
   }
   W_h = W.lazyProduct(h);
@@ -158,8 +158,8 @@ RecursiveUpdate RecursiveRegression::State::update(std::span<const double> x, do
   }
   const Eigen::Index n = count();
   double predicted = 0.0;
-  for (Eigen::Index j = 0; j < n; ++j) predicted += row[at(j)] * free_theta(j);
-  result.innovation = row[at(n)] - predicted;
+  for (Eigen::Index j = 0; j < n; ++j) predicted += row[j] * free_theta(j);
+  result.innovation = row[n] - predicted;
   result.lambda = options.forgetting.square_weight();
   if (termination == EstimateTermination::kEstimated)
     score_row(row, result);
@@ -169,7 +169,7 @@ RecursiveUpdate RecursiveRegression::State::update(std::span<const double> x, do
   (void)data.append(row.data(), lambda);
   column_weight = lambda * column_weight + 1.0;
   for (Eigen::Index j = 0; j < n; ++j) {
-    const double value = row[at(j)];
+    const double value = row[j];
     column_sums(j) = lambda * column_sums(j) + value;
     column_squares(j) = lambda * column_squares(j) + value * value;
   }
@@ -177,7 +177,7 @@ RecursiveUpdate RecursiveRegression::State::update(std::span<const double> x, do
     const double square = lambda * lambda;
     for (Eigen::Index j = 0; j < n; ++j) {
       for (Eigen::Index i = 0; i <= j; ++i) {
-        squares(i, j) = square * squares(i, j) + row[at(i)] * row[at(j)];
+        squares(i, j) = square * squares(i, j) + row[i] * row[j];
       }
     }
   }
@@ -198,16 +198,16 @@ bool RecursiveRegression::State::take_row(std::span<const double> x, double z, i
   const Eigen::Index n = count();
   bool good = std::abs(z) <= kLargestValue;
   for (Eigen::Index j = 0; j < n; ++j) {
-    const double value = x[at(free[at(j)])];
-    row[at(j)] = value;
+    const double value = x[free[j]];
+    row[j] = value;
     good = good && std::abs(value) <= kLargestValue;
   }
   double regressand = z;
   for (const Eigen::Index i : pinned) {
-    good = good && std::abs(x[at(i)]) <= kLargestValue;
-    regressand -= x[at(i)] * prior(i);
+    good = good && std::abs(x[i]) <= kLargestValue;
+    regressand -= x[i] * prior(i);
   }
-  row[at(n)] = regressand;
+  row[n] = regressand;
   return good && data.accepts(row.data());
 }
 
@@ -219,19 +219,19 @@ void RecursiveRegression::State::score_row(const internal::RecursiveRow& row, Re
   const double slope = innovation / h_W_h;
   double fitted = 0.0;
   for (Eigen::Index j = 0; j < n; ++j) {
-    d_hat[at(j)] = row[at(j)] + slope * W_h(j);
-    fitted += d_hat[at(j)] * free_theta(j);
+    d_hat[j] = row[j] + slope * W_h(j);
+    fitted += d_hat[j] * free_theta(j);
   }
-  d_hat[at(n)] = fitted;
+  d_hat[n] = fitted;
   data.coordinates(d_hat.data(), along.data(), along_exact.data());
   double q = 0.0;
-  for (int i = 0; i < data.exact_rank(); ++i) q += along_exact[at(i)] * along_exact[at(i)];
+  for (int i = 0; i < data.exact_rank(); ++i) q += along_exact[i] * along_exact[i];
   const int last = data.noisy_columns() - 1;
   const double smallest = data.singular_value(last);
   const int excited = options.method == Method::kPcaGtls ? excited_noisy : last;
   for (int j = 0; j < excited; ++j) {
     const double s = data.singular_value(j);
-    const double f = along[at(j)];
+    const double f = along[j];
     q += f * f / ((s - smallest) * (s + smallest));
   }
   if (!(q < 1e300)) q = 1e300;
@@ -242,7 +242,7 @@ void RecursiveRegression::State::score_row(const internal::RecursiveRow& row, Re
   // A recursive residual e/sqrt(1 + q) has the variance of the error (Brown, Durbin & Evans 1975).
   SmallVector score(n);
   const double residual = innovation / std::sqrt(1.0 + q);
-  for (Eigen::Index j = 0; j < n; ++j) score(j) = d_hat[at(j)] * residual;
+  for (Eigen::Index j = 0; j < n; ++j) score(j) = d_hat[j] * residual;
   scores.add(d_hat.data(), score, result.lambda);
 }
 
@@ -305,7 +305,7 @@ void RecursiveRegression::State::solve() {
   }
   h_W_h = h.dot(W_h);
   residual_variance = samples > static_cast<double>(n) ? data.power(h.data()) / freedom : -1.0;
-  for (Eigen::Index j = 0; j < n; ++j) theta(free[at(j)]) = free_theta(j);
+  for (Eigen::Index j = 0; j < n; ++j) theta(free[j]) = free_theta(j);
 }
 
 // OLS and GTLS: the vector of the smallest singular value. False, and theta stays, where there is none for z.
@@ -319,11 +319,11 @@ bool RecursiveRegression::State::solve_least() {
   internal::RecursiveRow b;
   data.basis(last, b.data());
   if (!(data.share_of_last(b.data()) > kNotInData * kNotInData)) return false;
-  const double factor = -1.0 / b[at(n)];
+  const double factor = -1.0 / b[n];
   double largest = 0.0;
-  for (Eigen::Index j = 0; j < n; ++j) largest = std::max(largest, std::abs(b[at(j)] * factor));
+  for (Eigen::Index j = 0; j < n; ++j) largest = std::max(largest, std::abs(b[j] * factor));
   if (!(largest < std::numeric_limits<double>::max())) return false;
-  for (Eigen::Index j = 0; j < n; ++j) free_theta(j) = b[at(j)] * factor;
+  for (Eigen::Index j = 0; j < n; ++j) free_theta(j) = b[j] * factor;
   return true;
 }
 
@@ -337,7 +337,7 @@ bool RecursiveRegression::State::solve_excited(int excited) {
     excited_directions = n;
     if (unexcited.cols() > 0) {
       unexcited.resize(n, 0);
-      unexcited_combinations.resize(signed_index(names.size()), 0);
+      unexcited_combinations.resize(names.size(), 0);
       unexcited_share.setZero();
     }
     return true;
@@ -388,12 +388,12 @@ bool RecursiveRegression::State::solve_excited(int excited) {
   for (Eigen::Index i = 0; i < n; ++i) free_theta(i) += offset(i) / free_weight(i);
   excited_directions = n - moves;
 
-  unexcited_combinations.setZero(signed_index(names.size()), moves);
+  unexcited_combinations.setZero(names.size(), moves);
   unexcited_share.setZero();
   for (int k = 0; k < moves; ++k) {
     double power = 0.0;
     for (Eigen::Index i = 0; i < n; ++i) {
-      const Eigen::Index full = free[at(i)];
+      const Eigen::Index full = free[i];
       unexcited_combinations(full, k) = unexcited(i, k) / free_weight(i);
       power += unexcited_combinations(full, k) * unexcited_combinations(full, k);
       unexcited_share(full) = std::min(1.0, unexcited_share(full) + unexcited(i, k) * unexcited(i, k));

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "veridyn/core/assert.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/regression/total_least_squares.hpp"
 
 namespace veridyn::estimation {
@@ -61,11 +60,11 @@ RecursiveTotalLeastSquares::RecursiveTotalLeastSquares(const Eigen::MatrixXd& W)
   for (int j = 0; j < size_; ++j) {
     int elements = 0;
     for (int i = 0; i < size_; ++i) {
-      T_[at(j * kStride + i)] = T(i, j);
-      inverse_[at(j * kStride + i)] = inverse(j, i);
+      T_[j * kStride + i] = T(i, j);
+      inverse_[j * kStride + i] = inverse(j, i);
       if (T(i, j) != 0.0) {
         ++elements;
-        source_[at(j)] = i;
+        source_[j] = i;
       }
     }
     diagonal_ = diagonal_ && elements == 1;
@@ -80,7 +79,7 @@ bool RecursiveTotalLeastSquares::whiten_row(const double* row, double* y) const 
     const double* t = T_.data() + j * kStride;
     double value = 0.0;
     if (diagonal_) {
-      const int i = source_[at(j)];
+      const int i = source_[j];
       value = row[i] * t[i];
     } else {
       for (int i = 0; i < size_; ++i) value += row[i] * t[i];
@@ -100,7 +99,7 @@ bool RecursiveTotalLeastSquares::append(const double* row, double weight) {
   std::array<double, kMaxRecursiveColumns> y, rotated;
   if (!whiten_row(row, y.data())) return false;
   for (int i = 0; i < size_; ++i) {
-    double& power = column_power_[at(i)];
+    double& power = column_power_[i];
     power = weight * power + row[i] * row[i];
   }
   const double root = std::sqrt(weight);
@@ -120,13 +119,13 @@ void RecursiveTotalLeastSquares::append_errors(double rows) {
   std::array<double, kMaxRecursiveColumns> row;
   for (int j = 0; j < noisy_; ++j) {
     row.fill(0.0);
-    row[at(exact_ + j)] = root;
+    row[exact_ + j] = root;
     rotate_in(triangle_.data(), kStride, 0, size_, size_, row.data(), 1.0);
   }
   for (int i = 0; i < size_; ++i) {  // W = sum of (T^-1)' rows of the white part
     for (int j = exact_; j < size_; ++j) {
-      const double t = inverse_[at(j * kStride + i)];
-      column_power_[at(i)] += rows * t * t;
+      const double t = inverse_[j * kStride + i];
+      column_power_[i] += rows * t * t;
     }
   }
   decompose(nullptr, 1.0);
@@ -153,7 +152,7 @@ void RecursiveTotalLeastSquares::decompose(const double* fresh, double weight) {
 void RecursiveTotalLeastSquares::split_exact() {
   rank_ = exact_;
   for (int i = 0; i < noisy_; ++i) {
-    for (int j = 0; j < noisy_; ++j) rest_[at(i * kStride + j)] = j < i ? 0.0 : triangle(exact_ + i)[exact_ + j];
+    for (int j = 0; j < noisy_; ++j) rest_[i * kStride + j] = j < i ? 0.0 : triangle(exact_ + i)[exact_ + j];
   }
   if (exact_ == 0) return;
   SmallMatrix R11 = SmallMatrix::Zero(exact_, exact_);
@@ -171,19 +170,19 @@ void RecursiveTotalLeastSquares::split_exact() {
     for (int j = 0; j < exact_; ++j) {
       const double v = inverse_length(i) * svd.matrixV()(i, j);
       if (j < rank_) {
-        exact_basis_[at(j * kStride + i)] = v / svd.singularValues()(j);
+        exact_basis_[j * kStride + i] = v / svd.singularValues()(j);
       } else {
-        null_basis_[at((j - rank_) * kStride + i)] = v;
+        null_basis_[(j - rank_) * kStride + i] = v;
       }
     }
   }
   for (int j = 0; j < exact_; ++j) {
     std::array<double, kMaxRecursiveColumns> row{};
     for (int k = 0; k < noisy_; ++k) {
-      for (int i = 0; i < exact_; ++i) row[at(k)] += svd.matrixU()(i, j) * triangle(i)[exact_ + k];
+      for (int i = 0; i < exact_; ++i) row[k] += svd.matrixU()(i, j) * triangle(i)[exact_ + k];
     }
     if (j < rank_) {
-      for (int k = 0; k < noisy_; ++k) exact_noisy_[at(j * kStride + k)] = row[at(k)];
+      for (int k = 0; k < noisy_; ++k) exact_noisy_[j * kStride + k] = row[k];
     } else {
       rotate_in(rest_.data(), kStride, 0, noisy_, noisy_, row.data(), 1.0);
     }
@@ -192,57 +191,57 @@ void RecursiveTotalLeastSquares::split_exact() {
 
 void RecursiveTotalLeastSquares::basis(int j, double* b) const {
   std::array<double, kMaxRecursiveColumns> g;  // in T coordinates
-  for (int i = 0; i < noisy_; ++i) g[at(exact_ + i)] = svd_.vector(i, j);
+  for (int i = 0; i < noisy_; ++i) g[exact_ + i] = svd_.vector(i, j);
   if (rank_ == exact_) {
     for (int i = exact_ - 1; i >= 0; --i) {
       double value = 0.0;
-      for (int k = i + 1; k < size_; ++k) value -= triangle(i)[k] * g[at(k)];
-      g[at(i)] = value / triangle(i)[i];
+      for (int k = i + 1; k < size_; ++k) value -= triangle(i)[k] * g[k];
+      g[i] = value / triangle(i)[i];
     }
   } else {
-    for (int i = 0; i < exact_; ++i) g[at(i)] = 0.0;
+    for (int i = 0; i < exact_; ++i) g[i] = 0.0;
     for (int r = 0; r < rank_; ++r) {
       double value = 0.0;
-      for (int k = 0; k < noisy_; ++k) value += exact_noisy_[at(r * kStride + k)] * svd_.vector(k, j);
-      for (int i = 0; i < exact_; ++i) g[at(i)] -= exact_basis_[at(r * kStride + i)] * value;
+      for (int k = 0; k < noisy_; ++k) value += exact_noisy_[r * kStride + k] * svd_.vector(k, j);
+      for (int i = 0; i < exact_; ++i) g[i] -= exact_basis_[r * kStride + i] * value;
     }
   }
   if (diagonal_) {
     for (int k = 0; k < size_; ++k) {
-      const int i = source_[at(k)];
-      b[i] = T_[at(k * kStride + i)] * g[at(k)];
+      const int i = source_[k];
+      b[i] = T_[k * kStride + i] * g[k];
     }
     return;
   }
   for (int i = 0; i < size_; ++i) b[i] = 0.0;
   for (int k = 0; k < size_; ++k) {
-    for (int i = 0; i < size_; ++i) b[i] += T_[at(k * kStride + i)] * g[at(k)];
+    for (int i = 0; i < size_; ++i) b[i] += T_[k * kStride + i] * g[k];
   }
 }
 
 void RecursiveTotalLeastSquares::exact_basis(int column, double* e) const {
   std::array<double, kMaxRecursiveColumns> g{};
   if (rank_ == exact_) {  // column of R11^-1
-    g[at(column)] = 1.0 / triangle(column)[column];
+    g[column] = 1.0 / triangle(column)[column];
     for (int i = column - 1; i >= 0; --i) {
       double value = 0.0;
-      for (int k = i + 1; k <= column; ++k) value -= triangle(i)[k] * g[at(k)];
-      g[at(i)] = value / triangle(i)[i];
+      for (int k = i + 1; k <= column; ++k) value -= triangle(i)[k] * g[k];
+      g[i] = value / triangle(i)[i];
     }
   } else {
-    for (int i = 0; i < exact_; ++i) g[at(i)] = exact_basis_[at(column * kStride + i)];
+    for (int i = 0; i < exact_; ++i) g[i] = exact_basis_[column * kStride + i];
   }
   for (int i = 0; i < size_; ++i) e[i] = 0.0;
   for (int k = 0; k < exact_; ++k) {
-    for (int i = 0; i < size_; ++i) e[i] += T_[at(k * kStride + i)] * g[at(k)];
+    for (int i = 0; i < size_; ++i) e[i] += T_[k * kStride + i] * g[k];
   }
 }
 
 void RecursiveTotalLeastSquares::null_basis(int column, double* t) const {
   for (int i = 0; i < size_; ++i) t[i] = 0.0;
   for (int k = 0; k < exact_; ++k) {
-    const double g = null_basis_[at(column * kStride + k)];
-    for (int i = 0; i < size_; ++i) t[i] += T_[at(k * kStride + i)] * g;
+    const double g = null_basis_[column * kStride + k];
+    for (int i = 0; i < size_; ++i) t[i] += T_[k * kStride + i] * g;
   }
 }
 
@@ -251,21 +250,21 @@ void RecursiveTotalLeastSquares::coordinates(const double* row, double* along_ba
   (void)whiten_row(row, y.data());
   if (rank_ == exact_) {
     for (int i = 0; i < exact_; ++i) {  // forward substitution that carries the white part along
-      const double f = y[at(i)] / triangle(i)[i];
+      const double f = y[i] / triangle(i)[i];
       along_exact[i] = f;
-      for (int k = i + 1; k < size_; ++k) y[at(k)] -= f * triangle(i)[k];
+      for (int k = i + 1; k < size_; ++k) y[k] -= f * triangle(i)[k];
     }
   } else {
     for (int r = 0; r < rank_; ++r) {
       double f = 0.0;
-      for (int i = 0; i < exact_; ++i) f += exact_basis_[at(r * kStride + i)] * y[at(i)];
+      for (int i = 0; i < exact_; ++i) f += exact_basis_[r * kStride + i] * y[i];
       along_exact[r] = f;
-      for (int k = 0; k < noisy_; ++k) y[at(exact_ + k)] -= f * exact_noisy_[at(r * kStride + k)];
+      for (int k = 0; k < noisy_; ++k) y[exact_ + k] -= f * exact_noisy_[r * kStride + k];
     }
   }
   for (int j = 0; j < noisy_; ++j) along_basis[j] = 0.0;
   for (int i = 0; i < noisy_; ++i) {
-    const double value = y[at(exact_ + i)];
+    const double value = y[exact_ + i];
     for (int j = 0; j < noisy_; ++j) along_basis[j] += value * svd_.vector(i, j);
   }
 }
@@ -276,13 +275,13 @@ double RecursiveTotalLeastSquares::power(const double* h) const {
     const double* t = inverse_.data() + (exact_ + j) * kStride;
     double value = 0.0;
     for (int i = 0; i < size_; ++i) value += t[i] * h[i];
-    g[at(j)] = value;
+    g[j] = value;
   }
   double sum = 0.0;
   for (int i = 0; i < noisy_; ++i) {
     const double* r = rank_ == exact_ ? triangle(exact_ + i) + exact_ : rest_.data() + i * kStride;
     double value = 0.0;
-    for (int j = i; j < noisy_; ++j) value += r[j] * g[at(j)];
+    for (int j = i; j < noisy_; ++j) value += r[j] * g[j];
     sum += value * value;
   }
   return sum;
@@ -291,7 +290,7 @@ double RecursiveTotalLeastSquares::power(const double* h) const {
 double RecursiveTotalLeastSquares::share_of_last(const double* h) const {
   double sum = 0.0, last = 0.0;
   for (int i = 0; i < size_; ++i) {
-    last = column_power_[at(i)] * h[i] * h[i];
+    last = column_power_[i] * h[i] * h[i];
     sum += last;
   }
   return sum > 0.0 ? last / sum : 0.0;
@@ -301,7 +300,7 @@ void RecursiveTotalLeastSquares::square_root(SmallMatrix& A) const {
   A.setZero(size_, size_);
   for (int i = 0; i < size_; ++i) {
     for (int k = i; k < size_; ++k) {
-      for (int j = 0; j < size_; ++j) A(i, j) += triangle(i)[k] * inverse_[at(k * kStride + j)];
+      for (int j = 0; j < size_; ++j) A(i, j) += triangle(i)[k] * inverse_[k * kStride + j];
     }
   }
 }

@@ -317,8 +317,7 @@ void RegressionTracker::remember(double t) {
   }
   const SmallVector& s = regression_.singular_values();
   if (history_.singular_value.size() < static_cast<std::size_t>(s.size())) {
-    history_.singular_value.resize(static_cast<std::size_t>(s.size()),
-                                   std::vector<double>(history_.time.size() - 1, 0.0));
+    history_.singular_value.resize(s.size(), std::vector<double>(history_.time.size() - 1, 0.0));
   }
   for (std::size_t i = 0; i < history_.singular_value.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "veridyn/core/index.hpp"
-
 namespace veridyn::estimation::internal {
 
 void ScoreBlocks::reset(Eigen::Index parameters, Eigen::Index block) {
@@ -32,7 +30,7 @@ void ScoreBlocks::start(const SmallMatrix& S, const SmallMatrix& M, double rows)
   weight_squared_ = rows * block;
   int k = 0;
   for (Eigen::Index j = 0; j < size_; ++j)
-    for (Eigen::Index i = 0; i <= j; ++i) information_[at(k++)] = M(i, j);
+    for (Eigen::Index i = 0; i <= j; ++i) information_[k++] = M(i, j);
   add_squares(information_, block / rows);
 }
 
@@ -49,8 +47,8 @@ void ScoreBlocks::forget(double lambda) {
   wide_weight_ *= square;
   weight_squared_ *= square * square;
   for (int k = 0; k < pairs_; ++k) {
-    open_information_[at(k)] *= square;
-    information_[at(k)] *= square;
+    open_information_[k] *= square;
+    information_[k] *= square;
   }
   squares_scale_ *= square * square;
   // What was forgotten beyond rounding is put down before the scale is no number any more.
@@ -64,8 +62,8 @@ void ScoreBlocks::rescale() {
 
 void ScoreBlocks::add_squares(const Pairs& information, double factor) {
   for (int i = 0; i < pairs_; ++i) {
-    const double scaled = information[at(i)] * factor / squares_scale_;
-    for (int j = 0; j <= i; ++j) squares_[at(i * kPairs + j)] += scaled * information[at(j)];
+    const double scaled = information[i] * factor / squares_scale_;
+    for (int j = 0; j <= i; ++j) squares_[i * kPairs + j] += scaled * information[j];
   }
 }
 
@@ -75,7 +73,7 @@ void ScoreBlocks::add(const double* x, const SmallVector& score, double lambda) 
   open_weight_ += 1.0;
   int k = 0;
   for (Eigen::Index j = 0; j < size_; ++j)
-    for (Eigen::Index i = 0; i <= j; ++i) open_information_[at(k++)] += x[i] * x[j];
+    for (Eigen::Index i = 0; i <= j; ++i) open_information_[k++] += x[i] * x[j];
   if (++filled_ >= length_) close();
 }
 
@@ -94,7 +92,7 @@ void ScoreBlocks::close() {
     wide_open_weight_ = 0.0;
     wide_filled_ = 0;
   }
-  for (int i = 0; i < pairs_; ++i) information_[at(i)] += open_information_[at(i)];
+  for (int i = 0; i < pairs_; ++i) information_[i] += open_information_[i];
   add_squares(open_information_, 1.0);
   open_.setZero();
   open_information_.fill(0.0);
@@ -110,14 +108,14 @@ double ScoreBlocks::blocks_behind(const double* p) const {
   int k = 0;
   for (Eigen::Index j = 0; j < size_; ++j) {
     for (Eigen::Index i = 0; i <= j; ++i, ++k) {
-      product[at(k)] = (i == j ? 1.0 : 2.0) * p[i] * p[j];
-      sum += product[at(k)] * information_[at(k)];
+      product[k] = (i == j ? 1.0 : 2.0) * p[i] * p[j];
+      sum += product[k] * information_[k];
     }
   }
   for (int i = 0; i < pairs_; ++i) {
-    double row = 0.5 * product[at(i)] * squares_[at(i * kPairs + i)];
-    for (int j = 0; j < i; ++j) row += product[at(j)] * squares_[at(i * kPairs + j)];
-    squares += 2.0 * product[at(i)] * row;
+    double row = 0.5 * product[i] * squares_[i * kPairs + i];
+    for (int j = 0; j < i; ++j) row += product[j] * squares_[i * kPairs + j];
+    squares += 2.0 * product[i] * row;
   }
   squares *= squares_scale_;
   return sum > 0.0 && squares > 0.0 ? sum * sum / squares : 0.0;

@@ -147,7 +147,7 @@ template <int kColumns>
 VERIDYN_INLINE void turn_pairs(Rows<kColumns>& V, Rows<kColumns>& B, const Rows<kColumns>& K) {
   for (int i = 0; i < kColumns; ++i) {
     for (int j = i + 1; j < kColumns; ++j) {
-      if (!(std::abs(K[at(i)](j)) > kLargestAngle)) continue;
+      if (!(std::abs(K[i](j)) > kLargestAngle)) continue;
       double pi = 0.0, pj = 0.0, d = 0.0;  // afresh: other pairs have turned these columns
       for (const auto& b : B) {
         pi += b(i) * b(i);
@@ -317,7 +317,7 @@ void track_here(const Tracked& tracked, const double* triangle, int stride, cons
 
 TrackedSvd::TrackedSvd(int columns) : columns_(columns), padded_(columns + columns % 2) {
   VERIDYN_ASSERT(columns >= 1 && columns <= kMaxRecursiveColumns);
-  for (int j = 0; j < columns; ++j) vectors_[at(j * padded_ + j)] = 1.0;
+  for (int j = 0; j < columns; ++j) vectors_[j * padded_ + j] = 1.0;
 }
 
 SmallMatrix TrackedSvd::vectors() const {

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 
-#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/recursive/small_matrix.hpp"
 
 namespace veridyn::estimation {
@@ -31,9 +30,9 @@ class TrackedSvd {
 
   [[nodiscard]] int columns() const { return columns_; }
   /// Descending.
-  [[nodiscard]] double singular_value(int j) const { return values_[at(j)]; }
+  [[nodiscard]] double singular_value(int j) const { return values_[j]; }
   /// Element i of right singular vector j.
-  [[nodiscard]] double vector(int i, int j) const { return vectors_[at(i * padded_ + j)]; }
+  [[nodiscard]] double vector(int i, int j) const { return vectors_[i * padded_ + j]; }
   [[nodiscard]] SmallMatrix vectors() const;
   /// Turns (of all columns at once, or of single pairs) so far.
   [[nodiscard]] std::uint64_t turns() const { return turns_; }

@@ -39,7 +39,7 @@ RegressionData resample_rows(const RegressionData& data, const SegmentRanges& se
   drawn.regressors.resize(N, data.parameters());
   drawn.regressand.resize(N);
   if (data.row_scale.size() > 0) drawn.row_scale.resize(N);
-  drawn.segment.resize(static_cast<std::size_t>(N));
+  drawn.segment.resize(N);
   Index at = 0;
   for (int id = 0; at < N; ++id) {
     // A row decides segment and beginning, so segments are drawn in proportion to their length.
@@ -55,7 +55,7 @@ RegressionData resample_rows(const RegressionData& data, const SegmentRanges& se
       drawn.regressors.row(at) = data.regressors.row(from);
       drawn.regressand(at) = data.regressand(from);
       if (data.row_scale.size() > 0) drawn.row_scale(at) = data.row_scale(from);
-      drawn.segment[static_cast<std::size_t>(at)] = id;
+      drawn.segment[at] = id;
     }
   }
   return drawn;
@@ -163,7 +163,7 @@ Bootstrap block_bootstrap(const RegressionData& data, const PointEstimator& esti
   result.sigma = result.covariance.diagonal().cwiseSqrt();
   for (Index j = 0; j < n; ++j) {
     std::vector<double> sorted(static_cast<std::size_t>(count));
-    for (Index i = 0; i < count; ++i) sorted[static_cast<std::size_t>(i)] = result.replicates(i, j);
+    for (Index i = 0; i < count; ++i) sorted[i] = result.replicates(i, j);
     std::sort(sorted.begin(), sorted.end());
     result.low95(j) = numerics::quantile_of_sorted(sorted, 0.025);
     result.high95(j) = numerics::quantile_of_sorted(sorted, 0.975);

@@ -90,10 +90,10 @@ std::vector<Eigen::MatrixXcd> transformed_segments(const RegressionData& data, c
     for (double m = std::ceil(options.low_Hz / spacing - 1e-9); m * spacing <= options.high_Hz * (1.0 + 1e-9); m += 1.0)
       if (m >= 1.0) frequencies.push_back(m * spacing);
     if (frequencies.empty()) continue;
-    Eigen::MatrixXcd segment(signed_index(frequencies.size()), n + 1);
+    Eigen::MatrixXcd segment(frequencies.size(), n + 1);
     for (Index j = 0; j <= n; ++j) {
       Eigen::VectorXd column = data.regressand.segment(begin, N);
-      if (j < n) column = data.regressors.col(columns[at(j)]).segment(begin, N);
+      if (j < n) column = data.regressors.col(columns[j]).segment(begin, N);
       if (data.row_scale.size() > 0) column = column.cwiseQuotient(data.row_scale.segment(begin, N)).eval();
       if (options.remove_trend) remove_line(column);
       segment.col(j) = finite_fourier_transform({column.data(), static_cast<std::size_t>(N)}, step, frequencies) /
@@ -122,8 +122,8 @@ std::vector<Parameter> unknown_parameters(const RegressionData& data, const std:
   std::vector<Parameter> parameters;
   for (const Index j : columns) {
     Parameter p;
-    p.name = data.parameter_names[at(j)];
-    if (!data.parameter_units.empty()) p.unit = data.parameter_units[at(j)];
+    p.name = data.parameter_names[j];
+    if (!data.parameter_units.empty()) p.unit = data.parameter_units[j];
     p.value = kNaN;
     p.sigma = p.sigma_white = p.high95 = kInfinity;
     p.low95 = -p.sigma;
@@ -151,7 +151,7 @@ Eigen::MatrixXd covariance_by_frequency(const RowMatrix& D, const OrdinaryLeastS
 Eigen::VectorXcd finite_fourier_transform(std::span<const double> x, double step,
                                           std::span<const double> frequencies_Hz) {
   VERIDYN_ASSERT(signed_index(x.size()) >= kLeastSamples && step > 0.0);
-  Eigen::VectorXcd result(signed_index(frequencies_Hz.size()));
+  Eigen::VectorXcd result(frequencies_Hz.size());
   const std::size_t last = x.size() - 1;
   for (std::size_t i = 0; i < frequencies_Hz.size(); ++i) {
     const double theta = 2.0 * kPi * frequencies_Hz[i] * step;
@@ -163,7 +163,7 @@ Eigen::VectorXcd finite_fourier_transform(std::span<const double> x, double step
       ends += std::conj(c.first[m]) * x[m];
       ends += std::polar(1.0, -theta * static_cast<double>(last)) * c.first[m] * x[last - m];
     }
-    result(static_cast<Index>(i)) = step * (sum + ends);
+    result(i) = step * (sum + ends);
   }
   return result;
 }
@@ -173,7 +173,7 @@ Eigen::VectorXcd derivative_transform(std::span<const double> x, double step, st
   const double T = step * static_cast<double>(x.size() - 1);
   for (std::size_t i = 0; i < frequencies_Hz.size(); ++i) {
     const double omega = 2.0 * kPi * frequencies_Hz[i];
-    Complex& value = result(static_cast<Index>(i));
+    Complex& value = result(i);
     value = Complex(0.0, omega) * value + x.back() * std::polar(1.0, -omega * T) - x.front();
   }
   return result;
@@ -200,7 +200,7 @@ FrequencyEstimate frequency_equation_error(const RegressionData& data, double st
   std::vector<Index> columns;
   for (Index j = 0; j < data.parameters(); ++j) {
     if ((data.regressors.col(j).array() == data.regressors(0, j)).all())
-      result.left_out.push_back(data.parameter_names[at(j)]);
+      result.left_out.push_back(data.parameter_names[j]);
     else
       columns.push_back(j);
   }
@@ -244,7 +244,7 @@ FrequencyEstimate frequency_equation_error(const RegressionData& data, double st
     e.degrees_of_freedom = std::max(1.0, static_cast<double>(result.frequencies - n));
   }
   for (Index i = 0; i < n; ++i) {
-    Parameter& p = e.parameters[at(i)];
+    Parameter& p = e.parameters[i];
     p.value = e.theta(i);
     p.sigma = std::sqrt(e.covariance(i, i));
     p.sigma_white = std::sqrt(e.covariance_white(i, i));

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/linear_algebra/cholesky.hpp"
 
 namespace veridyn::estimation {
@@ -111,7 +110,7 @@ void take_mean(RegressionEstimate& estimate, const GroupScatter& scatter, double
       scatter.sigma.cwiseQuotient(estimate.covariance.diagonal().cwiseSqrt().cwiseMax(1e-300));
   estimate.covariance = scale.asDiagonal() * estimate.covariance * scale.asDiagonal();
   for (Eigen::Index j = 0; j < scatter.mean.size(); ++j) {
-    Parameter& p = estimate.parameters[at(j)];
+    Parameter& p = estimate.parameters[j];
     p.value = scatter.mean(j);
     p.sigma = scatter.sigma(j);
     set_interval(p, estimate.degrees_of_freedom);

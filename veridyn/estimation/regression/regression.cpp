@@ -7,7 +7,6 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/regression/regression_analysis.hpp"
 
 namespace veridyn::estimation {
@@ -97,7 +96,7 @@ std::string describe_combination(const Eigen::VectorXd& combination, const std::
   for (const Eigen::Index i : order) {
     const double value = sign * combination(i);
     if (std::abs(value) < 0.05 * largest) break;
-    const std::string& name = names[at(i)];
+    const std::string& name = names[i];
     if (text.empty()) {
       text = std::abs(value) > 0.9995 ? name : fmt::format("{:.2f} {}", value, name);
     } else {

@@ -33,7 +33,7 @@ Pinning pin_parameters(const Eigen::VectorXd& prior, const Eigen::VectorXd& weig
   }
   const auto count = signed_index(pinning.free.size());
   pinning.P = Eigen::MatrixXd::Zero(n + 1, count + 1);
-  for (Eigen::Index j = 0; j < count; ++j) pinning.P(pinning.free[at(j)], j) = 1.0;
+  for (Eigen::Index j = 0; j < count; ++j) pinning.P(pinning.free[j], j) = 1.0;
   pinning.P(n, count) = 1.0;
   for (Eigen::Index i = 0; i < n; ++i) {
     if (!std::isfinite(weight(i))) pinning.P(i, count) = -prior(i);
@@ -72,8 +72,8 @@ FreeParameters free_parameters(const RegressionOptions& options, const Eigen::Ma
   out.prior.resize(count);
   out.weight.resize(count);
   for (Eigen::Index j = 0; j < count; ++j) {
-    out.prior(j) = out.all_prior(out.pinning.free[at(j)]);
-    out.weight(j) = out.all_weight(out.pinning.free[at(j)]);
+    out.prior(j) = out.all_prior(out.pinning.free[j]);
+    out.weight(j) = out.all_weight(out.pinning.free[j]);
   }
   const bool pinned = count < n;
   const Eigen::MatrixXd& P = out.pinning.P;
@@ -166,7 +166,7 @@ RegressionAnalysis::RegressionAnalysis(const RegressionData& data, const Regress
   if (has_constant && data.row_scale.size() == 0) spread_ -= rows() * mean.cwiseAbs2().transpose();
   variance_inflation_ = Eigen::VectorXd::Ones(n);
   for (Eigen::Index j = 0; j < n; ++j) {
-    if (constant_[at(j)]) continue;
+    if (constant_[j]) continue;
     variance_inflation_(j) =
         least_squares_.full_rank ? std::max(1.0, spread_(j) * least_squares_.inverse_normal(j, j)) : kInfinity;
   }
@@ -177,7 +177,7 @@ Eigen::MatrixXd RegressionAnalysis::error_covariance(Method method) const {
   if (method != Method::kTls && data_.has_error_covariance()) return error_covariance_;
   Eigen::VectorXd noisy = Eigen::VectorXd::Zero(size);
   for (Eigen::Index j = 0; j + 1 < size; ++j) {
-    const bool has_error = data_.has_error_covariance() ? data_.error_covariance(j, j) > 0.0 : !constant_[at(j)];
+    const bool has_error = data_.has_error_covariance() ? data_.error_covariance(j, j) > 0.0 : !constant_[j];
     if (method == Method::kTls && has_error) noisy(j) = 1.0;
   }
   noisy(size - 1) = 1.0;
@@ -351,13 +351,13 @@ RegressionEstimate RegressionAnalysis::by_pca(RegressionEstimate result) const {
                                      free.count(), list_of(result.unexcited));
   // Kept here because `finish` cannot distinguish the bound from the excited part.
   const double critical = numerics::student_t_quantile(1.0 - 0.5 * options_.significance, result.degrees_of_freedom);
-  result.parameters.resize(static_cast<std::size_t>(n));
+  result.parameters.resize(n);
   const Eigen::VectorXd inflation = inflation_on_excited(pca, free, free.lift.transpose() * spread_);
   for (Eigen::Index i = 0; i < n; ++i) {
-    if (!std::isfinite(free.all_weight(i))) result.parameters[at(i)].status = ParameterStatus::kFixed;
+    if (!std::isfinite(free.all_weight(i))) result.parameters[i].status = ParameterStatus::kFixed;
   }
   for (Eigen::Index j = 0; j < free.count(); ++j) {
-    Parameter& p = result.parameters[at(free.pinning.free[at(j)])];
+    Parameter& p = result.parameters[free.pinning.free[j]];
     p.variance_inflation = inflation(j);
     p.unexcited_share = std::min(1.0, bound.share(j));
     const double by_bound = bound.covariance(j, j);
@@ -370,7 +370,7 @@ RegressionEstimate RegressionAnalysis::by_pca(RegressionEstimate result) const {
 
 RegressionEstimate RegressionAnalysis::with_intervals(RegressionEstimate result) const {
   const Eigen::Index n = data_.parameters();
-  result.parameters.resize(static_cast<std::size_t>(n));
+  result.parameters.resize(n);
   const Eigen::VectorXd r = data_.regressand - data_.regressors * result.theta;
   const double spread = (data_.regressand.array() - data_.regressand.mean()).square().sum();
   result.residual_sd = std::sqrt(r.squaredNorm() / std::max(1.0, rows() - static_cast<double>(n)));
@@ -382,9 +382,9 @@ RegressionEstimate RegressionAnalysis::with_intervals(RegressionEstimate result)
   const bool usable = result.usable();
   const double freedom = std::max(1.0, result.degrees_of_freedom);
   for (Eigen::Index i = 0; i < n; ++i) {
-    Parameter& p = result.parameters[at(i)];
-    p.name = data_.parameter_names[at(i)];
-    if (!data_.parameter_units.empty()) p.unit = data_.parameter_units[at(i)];
+    Parameter& p = result.parameters[i];
+    p.name = data_.parameter_names[i];
+    if (!data_.parameter_units.empty()) p.unit = data_.parameter_units[i];
     p.value = result.theta(i);
     if (result.unexcited.empty()) p.variance_inflation = variance_inflation_(i);
     if (!usable) {

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/regression/equation_error.hpp"
 #include "veridyn/estimation/regression/regression.hpp"
 #include "veridyn/estimation/regression/regression_analysis.hpp"
@@ -30,7 +29,7 @@ struct Distance {
 Distance distance(const RegressionEstimate& scale, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   Distance largest;
   for (Eigen::Index i = 0; i < a.size(); ++i) {
-    const Parameter& p = scale.parameters[at(i)];
+    const Parameter& p = scale.parameters[i];
     if (p.status == ParameterStatus::kFixed || p.status == ParameterStatus::kNotExcited || !(p.sigma > 0.0)) continue;
     const double sigmas = std::abs(a(i) - b(i)) / p.sigma;
     if (sigmas > largest.sigmas) largest = {sigmas, p.name};

@@ -83,9 +83,8 @@ void RegressionData::validate() const {
     }
     for (Eigen::Index j = 0; j < n; ++j) {
       if (!std::isfinite(regressors(k, j))) {
-        throw InputError(
-            fmt::format("regression of {}: row {}", regressand_name, k),
-            fmt::format("regressor of {} is {}; must be finite", parameter_names[at(j)], regressors(k, j)));
+        throw InputError(fmt::format("regression of {}: row {}", regressand_name, k),
+                         fmt::format("regressor of {} is {}; must be finite", parameter_names[j], regressors(k, j)));
       }
     }
   }
@@ -100,7 +99,7 @@ void RegressionData::validate() const {
       throw InputError("regression.segment", fmt::format("has {} ids for {} rows", segment.size(), N));
     std::set<int> done;
     for (const auto& [begin, end] : segment_ranges(N, segment)) {
-      const int id = segment[at(begin)];
+      const int id = segment[begin];
       if (!done.insert(id).second)
         throw InputError("regression.segment",
                          fmt::format("id {} comes back at row {}; rows of a segment must be contiguous", id, begin));
@@ -117,7 +116,7 @@ std::vector<std::pair<Eigen::Index, Eigen::Index>> segment_ranges(Eigen::Index r
   std::vector<std::pair<Eigen::Index, Eigen::Index>> ranges;
   Eigen::Index begin = 0;
   for (Eigen::Index k = 1; k <= rows; ++k) {
-    if (k == rows || (!segment.empty() && segment[at(k)] != segment[at(k - 1)])) {
+    if (k == rows || (!segment.empty() && segment[k] != segment[k - 1])) {
       ranges.emplace_back(begin, k);
       begin = k;
     }
@@ -150,7 +149,7 @@ Eigen::Index drop_rows_that_are_not_finite(RegressionData& data) {
   const auto count = signed_index(kept.size());
   if (count == N) return 0;
   for (Eigen::Index k = 0; k < count; ++k) {
-    const Eigen::Index from = kept[at(k)];
+    const Eigen::Index from = kept[k];
     data.regressors.row(k) = data.regressors.row(from).eval();
     data.regressand(k) = data.regressand(from);
     if (data.row_scale.size() > 0) data.row_scale(k) = data.row_scale(from);

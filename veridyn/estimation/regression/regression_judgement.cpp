@@ -23,7 +23,7 @@ std::vector<Eigen::Index> parts_of(const RegressionData& data, Eigen::Index part
   const bool by_segment = signed_index(ranges.size()) >= parts;
   for (std::size_t s = 0; s < ranges.size(); ++s)
     for (Eigen::Index i = ranges[s].first; i < ranges[s].second; ++i)
-      part[at(i)] = by_segment ? signed_index(s) * parts / signed_index(ranges.size()) : i * parts / data.rows();
+      part[i] = by_segment ? signed_index(s) * parts / signed_index(ranges.size()) : i * parts / data.rows();
   return part;
 }
 
@@ -32,7 +32,7 @@ RegressionData rows_where(const RegressionData& data, const std::vector<Eigen::I
                           bool inside) {
   std::vector<Eigen::Index> rows;
   for (Eigen::Index i = 0; i < data.rows(); ++i)
-    if ((part[at(i)] == which) == inside) rows.push_back(i);
+    if ((part[i] == which) == inside) rows.push_back(i);
   RegressionData some = data;
   some.regressors = data.regressors(rows, Eigen::all);
   some.regressand = data.regressand(rows);
@@ -40,7 +40,7 @@ RegressionData rows_where(const RegressionData& data, const std::vector<Eigen::I
   int id = 0;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const bool next = k > 0 && rows[k] == rows[k - 1] + 1 &&
-                      (data.segment.empty() || data.segment[at(rows[k])] == data.segment[at(rows[k - 1])]);
+                      (data.segment.empty() || data.segment[rows[k]] == data.segment[rows[k - 1]]);
     if (k > 0 && !next) ++id;
     some.segment.push_back(id);
   }
@@ -70,8 +70,8 @@ std::optional<Agreement> agreement_of_halves(const RegressionData& data, Method 
   for (Eigen::Index k = 0; k < 2; ++k) {
     const RegressionData rows = rows_where(data, part, k, true);
     if (rows.rows() < kRowsAParameter * rows.parameters()) return std::nullopt;
-    half[at(k)] = estimate(rows, method, options);
-    if (!half[at(k)].usable()) return std::nullopt;
+    half[k] = estimate(rows, method, options);
+    if (!half[k].usable()) return std::nullopt;
   }
   return agreement(half[0].theta - half[1].theta, half[0].covariance + half[1].covariance);
 }
@@ -172,9 +172,9 @@ MethodResult by_bootstrap(const JudgedRegression& result, const JudgedRegression
       .method = fmt::format("bootstrap of {}", to_string(chosen.method)), .usable = b.usable(), .message = b.message};
   for (std::size_t i = 0; b.usable() && i < chosen.parameters.size(); ++i) {
     Parameter p = chosen.parameters[i];
-    p.sigma = b.sigma(signed_index(i));
-    p.low95 = b.low95(signed_index(i));
-    p.high95 = b.high95(signed_index(i));
+    p.sigma = b.sigma(i);
+    p.low95 = b.low95(i);
+    p.high95 = b.high95(i);
     row.parameters.push_back(std::move(p));
   }
   return row;

@@ -64,7 +64,7 @@ class Search {
     const Index n = triangle_.cols() - 1;
     if (k == 0) return triangle_.col(n).squaredNorm();
     Eigen::MatrixXd part(triangle_.rows(), k);
-    for (Index j = 0; j < k; ++j) part.col(j) = triangle_.col(columns[static_cast<std::size_t>(j)]);
+    for (Index j = 0; j < k; ++j) part.col(j) = triangle_.col(columns[j]);
     const numerics::HouseholderQr qr(part);
     for (Index j = 0; j < k; ++j) {
       if (!(std::abs(qr.R()(j, j)) > kDependent * part.col(j).norm())) return kInfinity;
@@ -79,8 +79,8 @@ class Search {
     Eigen::MatrixXd part(triangle_.rows(), k);
     RowMatrix X(X_.rows(), k);
     for (Index j = 0; j < k; ++j) {
-      part.col(j) = triangle_.col(columns[static_cast<std::size_t>(j)]);
-      X.col(j) = X_.col(columns[static_cast<std::size_t>(j)]);
+      part.col(j) = triangle_.col(columns[j]);
+      X.col(j) = X_.col(columns[j]);
     }
     const numerics::HouseholderQr qr(part);
     const Eigen::VectorXd theta = qr.solve(Eigen::VectorXd(triangle_.col(triangle_.cols() - 1)));
@@ -99,7 +99,7 @@ class Search {
   StructureStep describe(StructureAction action, Index term, double F, const std::vector<Index>& columns) const {
     StructureStep step;
     step.action = action;
-    if (term >= 0) step.term = data_.parameter_names[static_cast<std::size_t>(term)];
+    if (term >= 0) step.term = data_.parameter_names[term];
     step.terms = static_cast<Index>(columns.size());
     step.F = F;
     const double squares = rss(columns), k = static_cast<double>(step.terms);
@@ -241,8 +241,7 @@ class Search {
       double least = options_.least_contribution * rms;
       for (std::size_t i = 0; i < model_.size(); ++i) {
         if (std::find(always_.begin(), always_.end(), model_[i]) != always_.end()) continue;
-        const auto at = static_cast<Index>(i);
-        const double contribution = std::abs(theta(at)) * part.regressors.col(at).norm();
+        const double contribution = std::abs(theta(i)) * part.regressors.col(i).norm();
         if (contribution < least) least = contribution, weakest = model_[i];
       }
       if (weakest < 0) return;
@@ -258,7 +257,7 @@ class Search {
 
   void finish() {
     std::vector<std::string> names;
-    for (const Index j : model_) names.push_back(data_.parameter_names[static_cast<std::size_t>(j)]);
+    for (const Index j : model_) names.push_back(data_.parameter_names[j]);
     const char* how = options_.method == StructureMethod::kStepwise
                           ? "stepwise regression"
                           : "orthogonal functions with least predicted squared error";
@@ -325,11 +324,10 @@ RegressionData select_columns(const RegressionData& data, const std::vector<Inde
   std::vector<Index> kept = columns;
   kept.push_back(data.parameters());
   for (Index j = 0; j < k; ++j) {
-    const Index from = columns[static_cast<std::size_t>(j)];
+    const Index from = columns[j];
     part.regressors.col(j) = data.regressors.col(from);
-    part.parameter_names.push_back(data.parameter_names[static_cast<std::size_t>(from)]);
-    if (!data.parameter_units.empty())
-      part.parameter_units.push_back(data.parameter_units[static_cast<std::size_t>(from)]);
+    part.parameter_names.push_back(data.parameter_names[from]);
+    if (!data.parameter_units.empty()) part.parameter_units.push_back(data.parameter_units[from]);
   }
   part.regressand = data.regressand;
   part.regressand_name = data.regressand_name;

@@ -30,11 +30,11 @@ ErrorBasis error_basis(const Eigen::MatrixXd& W) {
   for (Eigen::Index i = 0; i < size; ++i) (W(i, i) > 0.0 ? noisy : exact).push_back(i);
   const auto noisy_count = signed_index(noisy.size());
   Eigen::VectorXd sd(noisy_count);
-  for (Eigen::Index i = 0; i < noisy_count; ++i) sd(i) = std::sqrt(W(noisy[at(i)], noisy[at(i)]));
+  for (Eigen::Index i = 0; i < noisy_count; ++i) sd(i) = std::sqrt(W(noisy[i], noisy[i]));
   Eigen::MatrixXd correlation(noisy_count, noisy_count);
   for (Eigen::Index i = 0; i < noisy_count; ++i) {
     for (Eigen::Index j = 0; j < noisy_count; ++j) {
-      correlation(i, j) = W(noisy[at(i)], noisy[at(j)]) / (sd(i) * sd(j));
+      correlation(i, j) = W(noisy[i], noisy[j]) / (sd(i) * sd(j));
     }
   }
   const numerics::SymmetricEigen eigen = numerics::symmetric_eigen(correlation);
@@ -47,9 +47,9 @@ ErrorBasis error_basis(const Eigen::MatrixXd& W) {
   const Eigen::Index white_count = noisy_count - null_count;
   Eigen::MatrixXd T_exact = Eigen::MatrixXd::Zero(size, exact_count);
   Eigen::MatrixXd T_white = Eigen::MatrixXd::Zero(size, white_count);
-  for (std::size_t i = 0; i < exact.size(); ++i) T_exact(exact[i], static_cast<Eigen::Index>(i)) = 1.0;
+  for (std::size_t i = 0; i < exact.size(); ++i) T_exact(exact[i], i) = 1.0;
   for (Eigen::Index i = 0; i < noisy_count; ++i) {
-    const Eigen::Index row = noisy[at(i)];
+    const Eigen::Index row = noisy[i];
     for (Eigen::Index j = 0; j < null_count; ++j) {
       T_exact(row, signed_index(exact.size()) + j) = eigen.vectors(i, j) / sd(i);
     }

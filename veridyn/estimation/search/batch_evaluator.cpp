@@ -6,7 +6,6 @@
 
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/batches/fingerprint.hpp"
 #include "veridyn/numerics/parallel.hpp"
 

@@ -36,7 +36,7 @@ void BlackBoxProblem::validate() const {
   if (high.size() != low.size() || names.size() != n)
     throw InputError(name, fmt::format("{} lower bounds, {} upper bounds, {} names", n, high.size(), names.size()));
   for (std::size_t i = 0; i < n; ++i) {
-    const double from = low(signed_index(i)), to = high(signed_index(i));
+    const double from = low(i), to = high(i);
     if (!(std::isfinite(from) && std::isfinite(to) && from < to))
       throw InputError(name, fmt::format("{} is to be searched from {} to {}; bounds must be finite and increase",
                                          names[i], from, to));

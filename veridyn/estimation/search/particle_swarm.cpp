@@ -21,7 +21,7 @@ class Swarm {
     const Eigen::VectorXd size = problem.high - problem.low;
     const Eigen::MatrixXd points = numerics::sobol_points(particles, at(problem.size()), random_.index(1ULL << 62));
     for (std::size_t i = 0; i < particles; ++i) {
-      x_.push_back(problem.low + points.row(signed_index(i)).transpose().cwiseProduct(size));
+      x_.push_back(problem.low + points.row(i).transpose().cwiseProduct(size));
       // Half way to another point within the bounds (Clerc's start): most particles stay inside at first.
       Eigen::VectorXd v(problem.size());
       for (Eigen::Index j = 0; j < v.size(); ++j)

@@ -14,7 +14,6 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
-#include "veridyn/core/index.hpp"
 
 namespace veridyn::estimation {
 namespace {
@@ -36,8 +35,8 @@ std::string plain(std::string text) {
 std::vector<std::pair<std::string, std::string>> head_of(const BlackBoxProblem& p) {
   std::vector<std::pair<std::string, std::string>> head = {{"problem", plain(p.name)}};
   for (std::size_t i = 0; i < p.names.size(); ++i) {
-    head.emplace_back(fmt::format("parameter {}", i + 1), fmt::format("{} from {} to {}", plain(p.names[i]),
-                                                                      p.low(signed_index(i)), p.high(signed_index(i))));
+    head.emplace_back(fmt::format("parameter {}", i + 1),
+                      fmt::format("{} from {} to {}", plain(p.names[i]), p.low(i), p.high(i)));
   }
   for (std::size_t i = 0; i < p.constraint_names.size(); ++i)
     head.emplace_back(fmt::format("constraint {}", i + 1), plain(p.constraint_names[i]));
@@ -80,7 +79,7 @@ std::string batch_text(std::span<const SearchEvaluation> batch, std::size_t firs
 /// Numbers of a row after `evaluation,seconds,end`, or nothing where it is no such row.
 std::optional<SearchEvaluation> parse_row(std::string_view line, std::size_t constraints, std::size_t parameters) {
   SearchEvaluation e;
-  e.x.resize(signed_index(parameters));
+  e.x.resize(parameters);
   e.values.constraints.resize(constraints);
   const std::size_t columns = 4 + constraints + parameters;
   for (std::size_t column = 0; column < columns; ++column) {
@@ -99,7 +98,7 @@ std::optional<SearchEvaluation> parse_row(std::string_view line, std::size_t con
     } else if (column < 4 + constraints) {
       e.values.constraints[column - 4] = value;
     } else {
-      e.x(signed_index(column - 4 - constraints)) = value;
+      e.x(column - 4 - constraints) = value;
     }
   }
   return e;

@@ -78,11 +78,11 @@ Linearisation linearise(const std::vector<double>& t, const std::vector<double>&
   const auto n = static_cast<Eigen::Index>(t.size());
   Linearisation l{RowMatrix(n, 5), Eigen::VectorXd(n), 0.0};
   for (Eigen::Index i = 0; i < n; ++i) {
-    const double time = t[static_cast<std::size_t>(i)];
+    const double time = t[i];
     const double e = std::exp(-p(1) * time), c = std::cos(p(0) * time), s = std::sin(p(0) * time);
     const double swing = e * (p(2) * c + p(3) * s);
     l.J.row(i) << e * time * (-p(2) * s + p(3) * c), -time * swing, e * c, e * s, 1.0;
-    l.residual(i) = y[static_cast<std::size_t>(i)] - swing - p(4);
+    l.residual(i) = y[i] - swing - p(4);
   }
   l.cost = l.residual.squaredNorm();
   return l;

@@ -274,7 +274,7 @@ Eigen::MatrixXd ensemble_start(const LogDensity& density, const NormalApproximat
   if (!std::isfinite(density(near.mean))) throw InputError("start", "the density is zero where the search ended");
   const numerics::Cholesky cholesky(near.covariance);
   if (!cholesky.positive_definite()) throw InputError("near", "its covariance is not positive definite");
-  Eigen::MatrixXd walkers(signed_index(walkers_of(options, at(n))), n);
+  Eigen::MatrixXd walkers(walkers_of(options, at(n)), n);
   for (Index w = 0; w < walkers.rows(); ++w) {
     numerics::RandomStream random(options.seed, fmt::format("walker {}", w));
     Eigen::VectorXd z(n);

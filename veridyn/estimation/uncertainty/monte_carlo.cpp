@@ -97,7 +97,7 @@ void UncertainInputs::validate() const {
     throw InputError("uncertain inputs", fmt::format("sizes differ: {} names", n));
   }
   for (Eigen::Index i = 0; i < n; ++i) {
-    const std::string& name = names[at(i)];
+    const std::string& name = names[i];
     if (!(std::isfinite(low(i)) && std::isfinite(high(i)) && low(i) <= high(i))) {
       throw InputError("uncertain inputs", fmt::format("range [{}, {}] of {} is not one", low(i), high(i), name));
     }
@@ -128,7 +128,7 @@ MonteCarloResult propagate_errors(const UncertainInputs& inputs, std::size_t out
   std::vector<std::vector<double>> error(outputs, std::vector<double>(options.draws));
   const std::size_t blocks = (options.draws + kBlock - 1) / kBlock;
   const auto draw = [&](std::size_t block) {
-    Eigen::MatrixXd x(n, static_cast<Eigen::Index>(kBlock)), noise = x, e = x;
+    Eigen::MatrixXd x(n, kBlock), noise = x, e = x;
     std::vector<double> true_output(outputs), measured_output(outputs);
     numerics::RandomStream random(options.seed, static_cast<std::uint64_t>(block));
     sampler.truth(random, x);
@@ -137,9 +137,8 @@ MonteCarloResult propagate_errors(const UncertainInputs& inputs, std::size_t out
     const std::size_t begin = block * kBlock;
     const std::size_t count = std::min(kBlock, options.draws - begin);
     for (std::size_t k = 0; k < count; ++k) {
-      const auto column = static_cast<Eigen::Index>(k);
-      f(x.col(column).data(), true_output.data());
-      f(e.col(column).data(), measured_output.data());
+      f(x.col(k).data(), true_output.data());
+      f(e.col(k).data(), measured_output.data());
       for (std::size_t o = 0; o < outputs; ++o) error[o][begin + k] = measured_output[o] - true_output[o];
     }
   };
@@ -159,14 +158,14 @@ Eigen::VectorXd linear_error_propagation(const UncertainInputs& inputs, std::siz
                                          const InputsToJacobian& jacobian, std::size_t points, std::uint64_t seed) {
   inputs.validate();
   const auto n = signed_index(inputs.names.size());
-  Eigen::MatrixXd x(n, static_cast<Eigen::Index>(std::max<std::size_t>(1, points)));
+  Eigen::MatrixXd x(n, std::max<std::size_t>(1, points));
   if (points == 0) {
     x.col(0) = 0.5 * (inputs.low + inputs.high);
   } else {
     numerics::RandomStream random(seed, "linear error propagation");
     InputSampler(inputs).truth(random, x);
   }
-  Eigen::VectorXd variance = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(outputs));
+  Eigen::VectorXd variance = Eigen::VectorXd::Zero(outputs);
   for (Eigen::Index k = 0; k < x.cols(); ++k) {
     const Eigen::MatrixXd J = jacobian(x.col(k));
     variance += (J * inputs.error_covariance).cwiseProduct(J).rowwise().sum();

@@ -27,11 +27,11 @@ class Posterior {
       : model_(model), measured_(measured), shared_(estimate.theta), local_(model.segments()) {
     weight_ = (dispersion * estimate.noise_covariance.diagonal()).cwiseInverse();
     for (std::size_t i = 0; i < model.parameters().size(); ++i)
-      if (!model.parameters()[i].fixed) add(model.parameters()[i], estimate.theta(signed_index(i)), i);
+      if (!model.parameters()[i].fixed) add(model.parameters()[i], estimate.theta(i), i);
     shared_count_ = unknowns_.size();
     for (std::size_t s = 0; s < model.segments(); ++s) {
       const auto conditions = model.initial_conditions(s);
-      local_[s] = Eigen::VectorXd(signed_index(conditions.size()));
+      local_[s] = Eigen::VectorXd(conditions.size());
       for (std::size_t i = 0; i < conditions.size(); ++i) local_[s](signed_index(i)) = conditions[i].start;
     }
     for (const SegmentParameter& p : estimate.segment_parameters) {
@@ -40,7 +40,7 @@ class Posterior {
           std::find_if(conditions.begin(), conditions.end(), [&](const ModelParameter& c) { return c.name == p.name; });
       if (found == conditions.end())
         throw InputError(p.name, "is no initial condition: an estimate with biases of outputs cannot be sampled");
-      add(*found, p.value, at(found - conditions.begin()), signed_index(p.segment));
+      add(*found, p.value, at(found - conditions.begin()), p.segment);
     }
   }
 
@@ -51,7 +51,7 @@ class Posterior {
   [[nodiscard]] double log_density(const Eigen::VectorXd& x) const {
     double sum = 0.0;
     for (Index i = 0; i < x.size(); ++i) {
-      const Unknown& u = unknowns_[at(i)];
+      const Unknown& u = unknowns_[i];
       if (!(x(i) >= u.what->low && x(i) <= u.what->high)) return -kInfinity;
       if (std::isfinite(u.what->prior_sigma)) sum -= 0.5 * std::pow((x(i) - u.what->start) / u.what->prior_sigma, 2);
     }
@@ -73,8 +73,8 @@ class Posterior {
     NormalApproximation near{.mean = Eigen::VectorXd(size()), .covariance = {}};
     Eigen::MatrixXd information = Eigen::MatrixXd::Zero(size(), size());
     for (Index i = 0; i < size(); ++i) {
-      near.mean(i) = unknowns_[at(i)].value;
-      information(i, i) = std::pow(unknowns_[at(i)].what->prior_sigma, -2);
+      near.mean(i) = unknowns_[i].value;
+      information(i, i) = std::pow(unknowns_[i].what->prior_sigma, -2);
     }
     for (std::size_t s = 0; s < model_.segments(); ++s) add_information(s, near.mean, information);
     const numerics::Cholesky cholesky(information);
@@ -109,15 +109,15 @@ class Posterior {
     Eigen::VectorXd theta(shared_.size() + local_[s].size());
     theta << shared_, local_[s];
     for (Index i = 0; i < x.size(); ++i)
-      if (acts_on(unknowns_[at(i)], s)) theta(place_in(unknowns_[at(i)])) = x(i);
+      if (acts_on(unknowns_[i], s)) theta(place_in(unknowns_[i])) = x(i);
     return theta;
   }
 
   void add_information(std::size_t s, const Eigen::VectorXd& x, Eigen::MatrixXd& information) const {
     std::vector<Index> active, which;
     for (Index i = 0; i < size(); ++i) {
-      if (!acts_on(unknowns_[at(i)], s)) continue;
-      active.push_back(place_in(unknowns_[at(i)]));
+      if (!acts_on(unknowns_[i], s)) continue;
+      active.push_back(place_in(unknowns_[i]));
       which.push_back(i);
     }
     ModelResponse response;
@@ -129,8 +129,7 @@ class Posterior {
         if (std::isnan(measured_[s](k, j))) continue;
         const Eigen::VectorXd row = response.sensitivity.row(k * outputs + j).transpose();
         for (Index a = 0; a < row.size(); ++a)
-          for (Index b = 0; b < row.size(); ++b)
-            information(which[at(a)], which[at(b)]) += weight_(j) * row(a) * row(b);
+          for (Index b = 0; b < row.size(); ++b) information(which[a], which[b]) += weight_(j) * row(a) * row(b);
       }
     }
   }
@@ -181,7 +180,7 @@ PosteriorSample sample_posterior(const ParametricModel& model, const std::vector
   sample.ensemble =
       sample_ensemble(densities, ensemble_start(density, near, options.ensemble), near, options.ensemble, progress);
   for (std::size_t i = 0; i < posterior.shared_count() && sample.ensemble.draws.rows() > 0; ++i) {
-    const auto column = sample.ensemble.draws.col(signed_index(i));
+    const auto column = sample.ensemble.draws.col(i);
     std::vector<double> sorted(column.begin(), column.end());
     std::sort(sorted.begin(), sorted.end());
     const ModelParameter& p = model.parameters()[posterior.parameter(i)];

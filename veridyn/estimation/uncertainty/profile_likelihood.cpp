@@ -169,7 +169,7 @@ class Profiling {
     };
     for (std::size_t i = 0; i < model_.parameters().size(); ++i) {
       const ModelParameter& p = model_.parameters()[i];
-      if (!p.fixed || fixed == i) add(e.theta(signed_index(i)), p);
+      if (!p.fixed || fixed == i) add(e.theta(i), p);
     }
     for (const SegmentParameter& q : e.segment_parameters) {
       for (const ModelParameter& p : model.initial_conditions(q.segment))
@@ -182,7 +182,7 @@ class Profiling {
   std::optional<ProfilePoint> fit(std::size_t parameter, double value, Eigen::VectorXd from, int threads) const {
     const WithOneFixed model(model_, parameter, value, initial_);
     for (Eigen::Index i = 0; i < from.size(); ++i) {
-      const ModelParameter& p = model.parameters()[at(i)];
+      const ModelParameter& p = model.parameters()[i];
       from(i) = p.fixed ? p.start : std::clamp(from(i), p.low, p.high);
     }
     OutputErrorOptions o = fit_;
@@ -217,9 +217,8 @@ class Profiling {
   /// The first step: to half the interval that the covariance says, within the bounds.
   [[nodiscard]] double first_step(std::size_t parameter, double sign) const {
     const ModelParameter& p = model_.parameters()[parameter];
-    const double sigma =
-        std::sqrt(covariance_(signed_index(parameter), signed_index(parameter)) * dispersion_of(parameter));
-    const double room = sign > 0.0 ? p.high - theta_(signed_index(parameter)) : theta_(signed_index(parameter)) - p.low;
+    const double sigma = std::sqrt(covariance_(parameter, parameter) * dispersion_of(parameter));
+    const double room = sign > 0.0 ? p.high - theta_(parameter) : theta_(parameter) - p.low;
     const double wanted = std::isfinite(sigma) && sigma > 0.0
                               ? 0.5 * std::sqrt(threshold_) * sigma
                               : (std::isfinite(room) ? 0.25 * room : 0.1 * std::max(1e-3, std::abs(p.start)));
@@ -229,7 +228,7 @@ class Profiling {
   /// Outwards until the threshold is passed or the bound reached, then inwards.
   Side follow_side(std::size_t parameter, double sign, int threads) const {
     const ModelParameter& p = model_.parameters()[parameter];
-    const double centre = theta_(signed_index(parameter)), goal = std::sqrt(threshold_);
+    const double centre = theta_(parameter), goal = std::sqrt(threshold_);
     const double bound = sign > 0.0 ? p.high : p.low;
     Side side;
     side.points.push_back({centre, 0.0, theta_});
@@ -344,7 +343,7 @@ class Profiling {
       ParameterProfile profile{.parameter = parameters[k],
                                .name = p.name,
                                .unit = p.unit,
-                               .value = theta_(signed_index(parameters[k])),
+                               .value = theta_(parameters[k]),
                                .low_bound = p.low,
                                .high_bound = p.high,
                                .low = low.end,

@@ -42,7 +42,7 @@ IndexInput read_input(const StudyTable& table, std::span<const IndexInput> known
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end())
     table.fail("parameter", fmt::format("'{}' is not one that can vary here{}", name, suggestion(name, names, 40)));
-  IndexInput input = known[at(found - names.begin())];
+  IndexInput input = known[found - names.begin()];
   input.place = table.place("parameter");
   const bool low = table.has("low"), high = table.has("high");
   if (!low && !high) return within(std::move(input), range_of(table, share), table, "parameter");
@@ -60,8 +60,7 @@ IndexInput read_input(const StudyTable& table, std::span<const IndexInput> known
 Eigen::MatrixXd points_of(std::span<const IndexInput> inputs, const Eigen::MatrixXd& design) {
   Eigen::MatrixXd points(design.rows(), design.cols());
   for (std::size_t i = 0; i < inputs.size(); ++i)
-    points.col(signed_index(i)) =
-        (inputs[i].low + (inputs[i].high - inputs[i].low) * design.col(signed_index(i)).array()).matrix();
+    points.col(i) = (inputs[i].low + (inputs[i].high - inputs[i].low) * design.col(i).array()).matrix();
   return points;
 }
 
@@ -149,7 +148,7 @@ ResponseIndices response_indices(const ResponseProblem& problem, const IndexOpti
   const Eigen::MatrixXd design = index_design(problem.inputs.size(), options);
   const Eigen::MatrixXd points = points_of(problem.inputs, design);
   const auto fill = [&](std::size_t item, std::span<double> values) {
-    if (!problem.run(points.row(signed_index(item)).transpose(), values)) std::ranges::fill(values, kNaN);
+    if (!problem.run(points.row(item).transpose(), values)) std::ranges::fill(values, kNaN);
   };
   const numerics::BatchValues found = store.compute({.name = "indices",
                                                      .fingerprint = fingerprint_of(problem, points),
@@ -169,7 +168,7 @@ ResponseIndices response_indices(const ResponseProblem& problem, const IndexOpti
         fmt::format("{} of {} runs could not finish; their samples do not count", result.failed, result.runs));
   for (std::size_t k = 0; k < width; ++k) {
     const Response& response = problem.responses[k];
-    const Eigen::VectorXd values = table.col(signed_index(k));
+    const Eigen::VectorXd values = table.col(k);
     if (result.failed < result.runs && !moves(values, response.negligible)) {
       result.constant.push_back(response.name);
       continue;

@@ -71,7 +71,7 @@ Eigen::MatrixXd index_design(std::size_t inputs, const IndexOptions& options) {
     case IndexMethod::kNone:
       break;
   }
-  return Eigen::MatrixXd(0, signed_index(inputs));
+  return Eigen::MatrixXd(0, inputs);
 }
 
 ResultIndices result_indices(std::string result, const Eigen::VectorXd& values, const Eigen::MatrixXd& design,

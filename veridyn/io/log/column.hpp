@@ -101,7 +101,7 @@ class Column {
             values = values.part(begin, end);
           } else {
             values.resize(end);
-            values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(begin));
+            values.erase(values.begin(), values.begin() + begin);
           }
         },
         storage_);

@@ -174,11 +174,9 @@ Log packet_log(const PacketLayout& layout, std::string_view bytes, const std::st
   };
   constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
   for (std::size_t i = 0; i < kAxes.size(); ++i)
-    add(fmt::format("accel_{}", kAxes[i]), "m/s^2",
-        [&, i](std::size_t k) { return motions[k].acceleration(static_cast<Eigen::Index>(i)); });
+    add(fmt::format("accel_{}", kAxes[i]), "m/s^2", [&, i](std::size_t k) { return motions[k].acceleration(i); });
   for (std::size_t i = 0; i < kAxes.size(); ++i)
-    add(fmt::format("gyro_{}", kAxes[i]), "rad/s",
-        [&, i](std::size_t k) { return motions[k].rate(static_cast<Eigen::Index>(i)); });
+    add(fmt::format("gyro_{}", kAxes[i]), "rad/s", [&, i](std::size_t k) { return motions[k].rate(i); });
   const auto euler = [&](std::size_t k) { return numerics::euler_from_quaternion(motions[k].attitude); };
   add("roll", "rad", [&](std::size_t k) { return euler(k).phi; });
   add("pitch", "rad", [&](std::size_t k) { return euler(k).theta; });

@@ -357,12 +357,12 @@ Estimate read_estimate(const std::filesystem::path& path) {
     throw InputError(name, fmt::format("'covariance' is not a {} by {} matrix", n, n));
   }
   for (Eigen::Index i = 0; i < n; ++i) {
-    const ordered_json& row = covariance[at(i)];
+    const ordered_json& row = covariance[i];
     if (!row.is_array() || row.size() != estimate.parameters.size()) {
       throw InputError(name, fmt::format("'covariance' row {} has not {} numbers", i + 1, n));
     }
     for (Eigen::Index j = 0; j < n; ++j) {
-      estimate.covariance(i, j) = read_number(row[at(j)], fmt::format("{}: covariance[{}][{}]", name, i, j));
+      estimate.covariance(i, j) = read_number(row[j], fmt::format("{}: covariance[{}][{}]", name, i, j));
     }
   }
   if (root.contains("fit") && root["fit"].is_object()) {

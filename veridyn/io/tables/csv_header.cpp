@@ -102,7 +102,7 @@ std::vector<std::string> row_of_units(const std::vector<std::string>& cells) {
 std::vector<std::string> number_repeated(std::vector<Header>& headers) {
   std::vector<std::string> repeated;
   const auto taken = [&](const std::string& name, std::size_t before) {
-    return std::any_of(headers.begin(), headers.begin() + static_cast<std::ptrdiff_t>(before),
+    return std::any_of(headers.begin(), headers.begin() + before,
                        [&](const Header& header) { return header.name == name; });
   };
   std::map<std::string, std::size_t> count;

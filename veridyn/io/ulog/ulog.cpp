@@ -224,8 +224,7 @@ class Walker {
     const std::string_view body = data_.substr(at + 3, size_at(at));
     switch (data_[at + 2]) {
       case 'D': {
-        Subscription& subscription =
-            subscriptions_[static_cast<std::size_t>(subscription_of_[load<std::uint16_t>(body.data())])];
+        Subscription& subscription = subscriptions_[subscription_of_[load<std::uint16_t>(body.data())]];
         subscription.records.push_back(at + 5);
         subscription.sizes.push_back(static_cast<std::uint16_t>(body.size() - 2));
         data_begun_ = true;

@@ -41,8 +41,7 @@ std::optional<Datagram> PoseClient::next(Nanoseconds now) {
   if (socket_ < 0) connect(now);
   if (socket_ < 0) return std::nullopt;
   if (end_ - begin_ < kPosePacketBytes) {
-    std::copy(buffer_.begin() + static_cast<std::ptrdiff_t>(begin_),
-              buffer_.begin() + static_cast<std::ptrdiff_t>(end_), buffer_.begin());
+    std::copy(buffer_.begin() + begin_, buffer_.begin() + end_, buffer_.begin());
     end_ -= begin_;
     begin_ = 0;
     const ssize_t n = ::recv(socket_, buffer_.data() + end_, buffer_.size() - end_, 0);

@@ -22,7 +22,7 @@ PosePacket encode(const CameraPose& pose) {
   std::copy(kPoseStart.begin(), kPoseStart.end(), bytes.begin());
   put_at(out, kPoseSequenceAt, pose.sequence);
   put_at(out, kPoseStampAt, pose.stamp);
-  for (std::size_t i = 0; i < 3; ++i) put_at(out, kPoseNumbersAt + 8 * i, pose.pose(static_cast<Eigen::Index>(i)));
+  for (std::size_t i = 0; i < 3; ++i) put_at(out, kPoseNumbersAt + 8 * i, pose.pose(i));
   std::size_t at = kPoseCovarianceAt;
   for (Eigen::Index row = 0; row < 3; ++row) {
     for (Eigen::Index column = row; column < 3; ++column, at += 8) put_at(out, at, pose.covariance(row, column));
@@ -37,8 +37,7 @@ std::optional<CameraPose> decode_pose(std::string_view bytes) {
   CameraPose p;
   p.sequence = number_at<std::uint32_t>(bytes, kPoseSequenceAt);
   p.stamp = number_at<std::int64_t>(bytes, kPoseStampAt);
-  for (std::size_t i = 0; i < 3; ++i)
-    p.pose(static_cast<Eigen::Index>(i)) = number_at<double>(bytes, kPoseNumbersAt + 8 * i);
+  for (std::size_t i = 0; i < 3; ++i) p.pose(i) = number_at<double>(bytes, kPoseNumbersAt + 8 * i);
   std::size_t at = kPoseCovarianceAt;
   for (Eigen::Index row = 0; row < 3; ++row) {
     for (Eigen::Index column = row; column < 3; ++column, at += 8)

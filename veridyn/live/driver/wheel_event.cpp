@@ -50,7 +50,7 @@ std::optional<std::uint16_t> axis_code(std::string_view name) {
 std::optional<WheelEvent> WheelEventDecoder::next(Bytes& bytes) {
   while (!bytes.empty()) {
     const std::size_t taken = std::min(bytes.size(), kRecord - size_);
-    std::copy_n(bytes.begin(), taken, record_.begin() + static_cast<std::ptrdiff_t>(size_));
+    std::copy_n(bytes.begin(), taken, record_.begin() + size_);
     size_ += taken;
     bytes = bytes.subspan(taken);
     if (size_ < kRecord) break;

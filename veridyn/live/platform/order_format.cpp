@@ -156,7 +156,7 @@ std::string_view OrderFormat::strokes(const PlatformOrder& order) {
   for (std::size_t i = 0; i < kStrokes; ++i) {
     double share = 0.5;
     if (i < static_cast<std::size_t>(legs_->count()))
-      share = (lengths.position(static_cast<Eigen::Index>(i)) - leg.lowest) / (leg.highest - leg.lowest);
+      share = (lengths.position(i) - leg.lowest) / (leg.highest - leg.lowest);
     const auto value = static_cast<unsigned>(std::lround(65535.0 * std::clamp(share, 0.0, 1.0)));
     bytes_[2 + 2 * i] = static_cast<char>(value >> 8U);
     bytes_[3 + 2 * i] = static_cast<char>(value & 0xffU);

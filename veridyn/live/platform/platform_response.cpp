@@ -8,7 +8,6 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/linear_systems/causal_filter.hpp"
 
 namespace veridyn::live {
@@ -28,8 +27,8 @@ Eigen::VectorXd simulated(const ToldAndReached& m, const Unknowns& u) {
   const double behind = std::max(u.delay, 0.0) / m.step;
   const auto whole = static_cast<std::ptrdiff_t>(behind);
   const double part = behind - static_cast<double>(whole);
-  const auto told = [&](std::ptrdiff_t k) { return m.told[at(std::max<std::ptrdiff_t>(k, 0))]; };
-  Eigen::VectorXd y(signed_index(m.told.size()));
+  const auto told = [&](std::ptrdiff_t k) { return m.told[std::max<std::ptrdiff_t>(k, 0)]; };
+  Eigen::VectorXd y(m.told.size());
   for (Eigen::Index k = 0; k < y.size(); ++k)
     y(k) = u.gain * filter.step((1.0 - part) * told(k - whole) + part * told(k - whole - 1), m.step);
   return y;
@@ -60,7 +59,7 @@ Unknowns best_start(const ToldAndReached& m, const Eigen::VectorXd& y) {
 
 /// Of the simulated motion by each unknown, by differences.
 Eigen::MatrixXd derivatives(const ToldAndReached& m, const Unknowns& u) {
-  Eigen::MatrixXd J(signed_index(m.told.size()), 4);
+  Eigen::MatrixXd J(m.told.size(), 4);
   const Eigen::Vector4d steps(1e-4, 1e-4, 1e-4, 1e-2 * m.step);
   for (int i = 0; i < 4; ++i) {
     Eigen::Vector4d up = u.vector(), down = up;
@@ -111,7 +110,7 @@ PlatformResponse fit_response(const ToldAndReached& m) {
   constexpr std::size_t kFewest = 200;
   if (m.told.size() < kFewest || m.told.size() != m.reached.size())
     throw InputError("platform response", fmt::format("{} answers; takes {} at least", m.reached.size(), kFewest));
-  const Eigen::Map<const Eigen::VectorXd> reached(m.reached.data(), signed_index(m.reached.size())),
+  const Eigen::Map<const Eigen::VectorXd> reached(m.reached.data(), m.reached.size()),
       told(m.told.data(), reached.size());
   if (!reached.allFinite() || !told.allFinite()) throw InputError("platform response", "a position is not finite");
   const Eigen::VectorXd y = reached.array() - reached.mean();

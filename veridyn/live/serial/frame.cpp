@@ -57,7 +57,7 @@ std::optional<SerialFrame> FrameDecoder::next(Bytes& bytes) {
     const auto zero = std::find(bytes.begin(), bytes.end(), std::uint8_t{0});
     const auto run = static_cast<std::size_t>(zero - bytes.begin());
     const std::size_t taken = std::min(run, buffer_.size() - size_);
-    std::copy_n(bytes.begin(), taken, buffer_.begin() + static_cast<std::ptrdiff_t>(size_));
+    std::copy_n(bytes.begin(), taken, buffer_.begin() + size_);
     size_ += taken;
     overflowed_ = overflowed_ || taken < run;
     const bool ended = zero != bytes.end();

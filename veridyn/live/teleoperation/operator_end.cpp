@@ -143,7 +143,7 @@ LinkQuality OperatorEnd::quality(Nanoseconds now) const {
   if (round_trip_count_ > 0) {
     std::array<Nanoseconds, std::tuple_size_v<decltype(round_trips_)>> sorted = round_trips_;
     const auto count = std::min<std::size_t>(round_trip_count_, sorted.size());
-    std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count));
+    std::sort(sorted.begin(), sorted.begin() + count);
     quality.round_trip_last = round_trips_[(round_trip_count_ - 1) % round_trips_.size()];
     quality.round_trip_least = sorted.front();
     quality.round_trip_median = sorted[(count - 1) / 2];

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/dynamics/mechanism.hpp"
 #include "veridyn/muscle/model/body_force.hpp"
 #include "veridyn/muscle/model/scalar.hpp"
@@ -17,7 +16,7 @@ namespace veridyn::muscle {
 template <typename Scalar>
 void add_wrench(const Mechanism& mechanism, const Kinematics<Scalar>& kinematics, int link,
                 const SpatialVector<Scalar>& wrench, Scalar* tau) {
-  for (const int c : mechanism.ancestors(link)) tau[c] += kinematics.columns[at(c)].dot(wrench);
+  for (const int c : mechanism.ancestors(link)) tau[c] += kinematics.columns[c].dot(wrench);
 }
 
 /// Adds `wrench` itself, by link.
@@ -51,9 +50,9 @@ MovingFrame<Scalar> moving_frame(const Mechanism& mechanism, const Kinematics<Sc
                                  const Placement& in_body) {
   const Mechanism::BodyPlace& place = mechanism.body(body);
   const Placement in_link = place.in_link * in_body;
-  const Pose<Scalar>& pose = kinematics.pose[at(place.link)];
+  const Pose<Scalar>& pose = kinematics.pose[place.link];
   return {place.link, pose.rotation * in_link.rotation.cast<Scalar>(), pose * in_link.translation,
-          &kinematics.velocity[at(place.link)]};
+          &kinematics.velocity[place.link]};
 }
 
 /// Spring from point to point: tension stiffness (distance - rest_length). None while the points coincide.

@@ -12,23 +12,23 @@ CoordinateReduction::CoordinateReduction(const Model& model, std::span<const int
     : roles_(model.coordinates.size(), CoordinateRole::kFree),
       free_root_(model.coordinates.size(), -1),
       driven_root_(model.coordinates.size(), -1) {
-  const auto place = [&model](int c) { return fmt::format("coordinate '{}'", model.coordinates[at(c)].name); };
+  const auto place = [&model](int c) { return fmt::format("coordinate '{}'", model.coordinates[c].name); };
   for (std::size_t c = 0; c < roles_.size(); ++c) {
     if (model.coordinates[c].locked) roles_[c] = CoordinateRole::kDriven;
   }
-  for (const int c : prescribed) roles_[at(c)] = CoordinateRole::kDriven;
+  for (const int c : prescribed) roles_[c] = CoordinateRole::kDriven;
 
   std::vector<const CoordinateCoupler*> setter(roles_.size(), nullptr);
   for (const CoordinateCoupler& coupler : model.couplers) {
     const int c = coupler.dependent;
-    if (const CoordinateCoupler* other = setter[at(c)]; other != nullptr) {
+    if (const CoordinateCoupler* other = setter[c]; other != nullptr) {
       throw InputError(place(c), fmt::format("couplers '{}' and '{}' both set it", other->name, coupler.name));
     }
-    if (roles_[at(c)] == CoordinateRole::kDriven) {
+    if (roles_[c] == CoordinateRole::kDriven) {
       throw InputError(place(c), fmt::format("it is {} and coupler '{}' sets it too: remove one of them",
-                                             model.coordinates[at(c)].locked ? "locked" : "prescribed", coupler.name));
+                                             model.coordinates[c].locked ? "locked" : "prescribed", coupler.name));
     }
-    setter[at(c)] = &coupler;
+    setter[c] = &coupler;
   }
   for (std::size_t c = 0; c < roles_.size(); ++c) {
     if (setter[c] != nullptr) roles_[c] = CoordinateRole::kCoupled;

@@ -4,7 +4,6 @@
 #include <span>
 #include <vector>
 
-#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/dynamics/dynamics.hpp"
 #include "veridyn/muscle/model/model.hpp"
 
@@ -36,15 +35,15 @@ class CoordinateReduction {
   /// although it is locked or prescribed.
   explicit CoordinateReduction(const Model& model, std::span<const int> prescribed = {});
 
-  [[nodiscard]] CoordinateRole role(int coordinate) const { return roles_[at(coordinate)]; }
+  [[nodiscard]] CoordinateRole role(int coordinate) const { return roles_[coordinate]; }
   [[nodiscard]] int coordinates() const { return static_cast<int>(roles_.size()); }
   /// Free coordinates, in the model's order: z(i) is coordinate free()[i].
   [[nodiscard]] std::span<const int> free() const { return free_; }
   [[nodiscard]] std::span<const int> driven() const { return driven_; }
   /// Index in `free()` of the coordinate that this one follows; -1 when that is a driven one.
-  [[nodiscard]] int free_root(int coordinate) const { return free_root_[at(coordinate)]; }
+  [[nodiscard]] int free_root(int coordinate) const { return free_root_[coordinate]; }
   /// The same in `driven()`.
-  [[nodiscard]] int driven_root(int coordinate) const { return driven_root_[at(coordinate)]; }
+  [[nodiscard]] int driven_root(int coordinate) const { return driven_root_[coordinate]; }
   /// What a generalised force on coordinate c adds to that on `coordinate`: 1 for itself, the slope (by coordinate, of
   /// `ExpandedState`) of those that follow it when it is free, else 0.
   [[nodiscard]] double share_in(int c, int coordinate, const double* slope) const {
@@ -167,7 +166,7 @@ ReducedDynamics<Scalar>::ReducedDynamics(const Mechanism& mechanism, const Coord
       state_(mechanism.coordinates()),
       qddot_(mechanism.coordinates()),
       residual_(mechanism.coordinates()),
-      scale_(signed_index(reduction.free().size())),
+      scale_(reduction.free().size()),
       mass_(scale_.size(), scale_.size()) {}
 
 template <typename Scalar>
@@ -191,7 +190,7 @@ Factorization ReducedDynamics<Scalar>::forward_dynamics(const Scalar* tau, const
   if (reduction_->free_are_uncoupled()) {
     for (int c = 0; c < mechanism.coordinates(); ++c) qddot_(c) = tau[c] - residual_(c);
     const Factorization result = dynamics_.solve_mass(reduction_->follows_driven(), qddot_.data());
-    for (int i = 0; i < n; ++i) zddot[i] = qddot_(reduction_->free()[at(i)]);
+    for (int i = 0; i < n; ++i) zddot[i] = qddot_(reduction_->free()[i]);
     qddot_ += state_.bias;
     return result;
   }
@@ -222,7 +221,7 @@ Factorization ReducedDynamics<Scalar>::forward_dynamics(const Scalar* tau, const
   for (int k = n - 1; k >= 0; --k) {
     Scalar* const row = mass_.data() + k * n;
     if (!(row[k] > Dynamics<Scalar>::kSingularPivot * scale_(k))) {
-      return {reduction_->free()[at(k)]};
+      return {reduction_->free()[k]};
     }
     const Scalar inverse = Scalar(1.0) / row[k];
     row[k] = inverse;

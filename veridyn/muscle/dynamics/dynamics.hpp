@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/dynamics/mechanism.hpp"
 
 /// Dynamics of a tree of links, M(q) qddot + h(q, qdot) = tau, h with gravity, by Featherstone's recursive algorithms
@@ -52,15 +51,15 @@ class Dynamics {
   /// What M(c, c) was summed from, without cancellation, after `update_mass_rows`: pivots below `kSingularPivot` of it
   /// are rounding.
   [[nodiscard]] Scalar mass_scale(int coordinate) const {
-    return pivot_scale(kinematics_.columns[at(coordinate)], composite_[at(mechanism_->link_of_coordinate(coordinate))]);
+    return pivot_scale(kinematics_.columns[coordinate], composite_[mechanism_->link_of_coordinate(coordinate)]);
   }
   /// After `inverse_dynamics`: acceleration of a link (of the ground: minus gravity), and the force that its joint
   /// passes on, that of the links beyond it included.
-  [[nodiscard]] const SpatialVector<Scalar>& acceleration(int link) const { return acceleration_[at(link)]; }
-  [[nodiscard]] const SpatialVector<Scalar>& joint_force(int link) const { return force_[at(link)]; }
+  [[nodiscard]] const SpatialVector<Scalar>& acceleration(int link) const { return acceleration_[link]; }
+  [[nodiscard]] const SpatialVector<Scalar>& joint_force(int link) const { return force_[link]; }
   /// After `set_state`: a link's inertia in ground.
   [[nodiscard]] RigidInertia<Scalar> link_inertia(int link) const {
-    return RigidInertia<Scalar>::of(mechanism_->link(link).mass, center_[at(link)], inertia_[at(link)]);
+    return RigidInertia<Scalar>::of(mechanism_->link(link).mass, center_[link], inertia_[link]);
   }
 
   /// The whole symmetric matrix. Calls `update_mass_rows`.
@@ -162,10 +161,10 @@ void Dynamics<Scalar>::inverse_dynamics(const Scalar* qddot, const SpatialVector
   for (std::size_t i = 1; i < links; ++i) {
     const Link& link = mechanism_->link(static_cast<int>(i));
     SpatialVector<Scalar>& A = acceleration_[i];
-    A = acceleration_[at(link.parent)];
+    A = acceleration_[link.parent];
     A += kinematics_.velocity_bias[i];
     if (qddot != nullptr) {
-      for (const int c : link.coordinates) A.add_scaled(qddot[c], kinematics_.columns[at(c)]);
+      for (const int c : link.coordinates) A.add_scaled(qddot[c], kinematics_.columns[c]);
     }
     // Newton and Euler at the mass centre, then the moment about the ground's origin.
     const Vector3<Scalar>& w = kinematics_.velocity[i].angular;
@@ -182,8 +181,8 @@ void Dynamics<Scalar>::inverse_dynamics(const Scalar* qddot, const SpatialVector
   }
   for (std::size_t i = links - 1; i >= 1; --i) {
     const Link& link = mechanism_->link(static_cast<int>(i));
-    for (const int c : link.coordinates) tau[c] = kinematics_.columns[at(c)].dot(force_[i]);
-    if (link.parent > 0) force_[at(link.parent)] += force_[i];
+    for (const int c : link.coordinates) tau[c] = kinematics_.columns[c].dot(force_[i]);
+    if (link.parent > 0) force_[link.parent] += force_[i];
   }
 }
 
@@ -193,8 +192,8 @@ void Dynamics<Scalar>::generalized_forces(const SpatialVector<Scalar>* applied, 
   for (std::size_t i = 1; i < links; ++i) force_[i] = applied[i];
   for (std::size_t i = links - 1; i >= 1; --i) {
     const Link& link = mechanism_->link(static_cast<int>(i));
-    for (const int c : link.coordinates) tau[c] = kinematics_.columns[at(c)].dot(force_[i]);
-    if (link.parent > 0) force_[at(link.parent)] += force_[i];
+    for (const int c : link.coordinates) tau[c] = kinematics_.columns[c].dot(force_[i]);
+    if (link.parent > 0) force_[link.parent] += force_[i];
   }
 }
 
@@ -206,7 +205,7 @@ void Dynamics<Scalar>::update_composite() {
   }
   for (std::size_t i = links - 1; i >= 1; --i) {
     const int parent = mechanism_->link(static_cast<int>(i)).parent;
-    if (parent > 0) composite_[at(parent)] += composite_[i];
+    if (parent > 0) composite_[parent] += composite_[i];
   }
 }
 
@@ -215,9 +214,9 @@ void Dynamics<Scalar>::update_mass_rows() {
   update_composite();
   for (std::size_t i = 1; i < center_.size(); ++i) {
     for (const int c : mechanism_->link(static_cast<int>(i)).coordinates) {
-      const SpatialVector<Scalar> F = composite_[i] * kinematics_.columns[at(c)];
+      const SpatialVector<Scalar> F = composite_[i] * kinematics_.columns[c];
       Scalar* row = rows_.data() + mechanism_->row(c);
-      for (const int d : mechanism_->chain(c)) *row++ = kinematics_.columns[at(d)].dot(F);
+      for (const int d : mechanism_->chain(c)) *row++ = kinematics_.columns[d].dot(F);
     }
   }
 }
@@ -318,36 +317,36 @@ Factorization Dynamics<Scalar>::forward_dynamics_articulated(const Scalar* tau, 
     // A joint of several coordinates is a chain of joints with massless links between: one at a time.
     for (std::size_t n = link.coordinates.size(); n-- > 0;) {
       const int c = link.coordinates[n];
-      const Vector6 S = stacked(kinematics_.columns[at(c)]);
-      Vector6& U = articulated_column_[at(c)];
+      const Vector6 S = stacked(kinematics_.columns[c]);
+      Vector6& U = articulated_column_[c];
       U.noalias() = IA * S;
       const Scalar D = S.dot(U);
-      if (!(D > kSingularPivot * pivot_scale(kinematics_.columns[at(c)], composite_[i]))) return {c};
-      pivot_[at(c)] = Scalar(1.0) / D;
+      if (!(D > kSingularPivot * pivot_scale(kinematics_.columns[c], composite_[i]))) return {c};
+      pivot_[c] = Scalar(1.0) / D;
       const Scalar u = tau[c] - S.dot(p);
-      work_[at(c)] = u;
-      const Vector6 scaled = U * pivot_[at(c)];
+      work_[c] = u;
+      const Vector6 scaled = U * pivot_[c];
       if (link.parent > 0 || n > 0) {
         for (int column = 0; column < 6; ++column) IA.col(column) -= scaled * U(column);
         p += scaled * u;
       }
     }
     if (link.parent > 0) {
-      articulated_[at(link.parent)] += IA;
-      articulated_force_[at(link.parent)] += p;
-      composite_[at(link.parent)] += composite_[i];
+      articulated_[link.parent] += IA;
+      articulated_force_[link.parent] += p;
+      composite_[link.parent] += composite_[i];
     }
   }
   acceleration_[0].linear = -mechanism_->gravity().cast<Scalar>();
   for (std::size_t i = 1; i < links; ++i) {
     const Link& link = mechanism_->link(static_cast<int>(i));
     SpatialVector<Scalar>& A = acceleration_[i];
-    A = acceleration_[at(link.parent)];
+    A = acceleration_[link.parent];
     for (const int c : link.coordinates) {
-      const Vector6& U = articulated_column_[at(c)];
+      const Vector6& U = articulated_column_[c];
       const Scalar UA = U.template head<3>().dot(A.angular) + U.template tail<3>().dot(A.linear);
-      qddot[c] = (work_[at(c)] - UA) * pivot_[at(c)];
-      A.add_scaled(qddot[c], kinematics_.columns[at(c)]);
+      qddot[c] = (work_[c] - UA) * pivot_[c];
+      A.add_scaled(qddot[c], kinematics_.columns[c]);
     }
     A += kinematics_.velocity_bias[i];
   }

@@ -39,7 +39,7 @@ InverseDynamicsDerivatives::InverseDynamicsDerivatives(const Mechanism& mechanis
   by_speed_.setZero(n, n);
   for (int i = 0; i < mechanism.links(); ++i) parent_.push_back(mechanism.link(i).parent);
   for (std::size_t k = 0; k < coordinates_.size(); ++k) {
-    row_[at(mechanism.link_of_coordinate(coordinates_[k]))] = static_cast<int>(k);
+    row_[mechanism.link_of_coordinate(coordinates_[k])] = static_cast<int>(k);
     std::vector<int> links;
     for (int i = mechanism.links() - 1; i >= 1; --i) {
       if (mechanism.moves(coordinates_[k], i)) links.push_back(i);
@@ -57,39 +57,38 @@ InverseDynamicsDerivatives::InverseDynamicsDerivatives(const Mechanism& mechanis
     momentum_[i] = inertia_[i] * kinematics.velocity[i];
   }
   for (std::size_t k = 0; k < coordinates_.size(); ++k) {
-    const auto column = static_cast<Eigen::Index>(k);
-    const int link = mechanism.link_of_coordinate(coordinates_[k]), before = parent_[at(link)];
-    const Spatial& S = kinematics.columns[at(coordinates_[k])];
-    const Spatial& V_before = kinematics.velocity[at(before)];
+    const int link = mechanism.link_of_coordinate(coordinates_[k]), before = parent_[link];
+    const Spatial& S = kinematics.columns[coordinates_[k]];
+    const Spatial& V_before = kinematics.velocity[before];
     const Spatial carried = cross_motion(V_before, S);
     Spatial a_value = cross_motion(dynamics.acceleration(before), S);
     a_value.add_scaled(-1.0, cross_motion(carried, V_before));
-    for (const int i : beyond_[k]) force_value_[at(i)] = force_speed_[at(i)] = Spatial{};
+    for (const int i : beyond_[k]) force_value_[i] = force_speed_[i] = Spatial{};
     for (const int i : beyond_[k]) {
-      const Spatial& V = kinematics.velocity[at(i)];
+      const Spatial& V = kinematics.velocity[i];
       Spatial dA = cross_motion(carried, V);
       dA += a_value;
-      force_value_[at(i)] += force_change(inertia_[at(i)], V, momentum_[at(i)], carried, dA);
+      force_value_[i] += force_change(inertia_[i], V, momentum_[i], carried, dA);
       dA = cross_motion(S, V);
       dA.add_scaled(2.0, carried);
-      force_speed_[at(i)] += force_change(inertia_[at(i)], V, momentum_[at(i)], S, dA);
-      if (row_[at(i)] >= 0) {
-        const Spatial& own = kinematics.columns[at(coordinates_[at(row_[at(i)])])];
-        by_value_(row_[at(i)], column) = own.dot(force_value_[at(i)]);
-        by_speed_(row_[at(i)], column) = own.dot(force_speed_[at(i)]);
+      force_speed_[i] += force_change(inertia_[i], V, momentum_[i], S, dA);
+      if (row_[i] >= 0) {
+        const Spatial& own = kinematics.columns[coordinates_[row_[i]]];
+        by_value_(row_[i], k) = own.dot(force_value_[i]);
+        by_speed_(row_[i], k) = own.dot(force_speed_[i]);
       }
       if (i != link) {
-        force_value_[at(parent_[at(i)])] += force_value_[at(i)];
-        force_speed_[at(parent_[at(i)])] += force_speed_[at(i)];
+        force_value_[parent_[i]] += force_value_[i];
+        force_speed_[parent_[i]] += force_speed_[i];
       }
     }
     Spatial turned = cross_force(S, dynamics.joint_force(link));
-    turned += force_value_[at(link)];
-    for (int i = before; i > 0; i = parent_[at(i)]) {
-      if (row_[at(i)] < 0) continue;
-      const Spatial& own = kinematics.columns[at(coordinates_[at(row_[at(i)])])];
-      by_value_(row_[at(i)], column) = own.dot(turned);
-      by_speed_(row_[at(i)], column) = own.dot(force_speed_[at(link)]);
+    turned += force_value_[link];
+    for (int i = before; i > 0; i = parent_[i]) {
+      if (row_[i] < 0) continue;
+      const Spatial& own = kinematics.columns[coordinates_[row_[i]]];
+      by_value_(row_[i], k) = own.dot(turned);
+      by_speed_(row_[i], k) = own.dot(force_speed_[link]);
     }
   }
 }

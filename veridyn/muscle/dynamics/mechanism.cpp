@@ -111,11 +111,11 @@ void check(const Model& model, const std::vector<int>& joint_of_body) {
             fmt::format("body '{}'", model.bodies[b].name),
             fmt::format("its joints make a circle that does not reach the ground (joint '{}'): only trees of "
                         "joints are supported",
-                        model.joints[at(joint_of_body[at(body)])].name));
+                        model.joints[joint_of_body[body]].name));
       }
-      const int joint = joint_of_body[at(body)];
+      const int joint = joint_of_body[body];
       if (joint < 0) break;  // reported for that body itself
-      body = model.joints[at(joint)].parent;
+      body = model.joints[joint].parent;
     }
   }
 }
@@ -134,19 +134,19 @@ Mechanism::Mechanism(const Model& model)
     if (joint.child <= 0 || at(joint.child) >= bodies || joint.parent < 0 || at(joint.parent) >= bodies) {
       throw InputError(place, "its bodies are not among the model's, or its child is the ground");
     }
-    int& of_child = joint_of_body[at(joint.child)];
+    int& of_child = joint_of_body[joint.child];
     if (of_child >= 0) {
       throw InputError(place,
                        fmt::format("body '{}' is moved by joint '{}' already: only trees of joints are supported",
-                                   model.bodies[at(joint.child)].name, model.joints[at(of_child)].name));
+                                   model.bodies[joint.child].name, model.joints[of_child].name));
     }
     of_child = static_cast<int>(j);
     for (int i = 0; i < 6; ++i) {
-      const TransformAxis& axis = i < 3 ? joint.rotation[at(i)] : joint.translation[at(i - 3)];
+      const TransformAxis& axis = i < 3 ? joint.rotation[i] : joint.translation[i - 3];
       if (axis.coordinate >= 0 &&
           std::find(joint.coordinates.begin(), joint.coordinates.end(), axis.coordinate) == joint.coordinates.end()) {
         const std::string name = at(axis.coordinate) < model.coordinates.size()
-                                     ? model.coordinates[at(axis.coordinate)].name
+                                     ? model.coordinates[axis.coordinate].name
                                      : std::to_string(axis.coordinate);
         throw InputError(place, fmt::format("it moves by coordinate '{}', which is not its own", name));
       }
@@ -163,33 +163,33 @@ Mechanism::Mechanism(const Model& model)
   for (std::size_t remaining = bodies - 1; remaining > 0;) {
     for (std::size_t b = 1; b < bodies; ++b) {
       if (placed[b]) continue;
-      const Joint& joint = model.joints[at(joint_of_body[b])];
-      if (!placed[at(joint.parent)]) continue;
+      const Joint& joint = model.joints[joint_of_body[b]];
+      if (!placed[joint.parent]) continue;
       placed[b] = true;
       --remaining;
-      const BodyPlace& parent = bodies_[at(joint.parent)];
+      const BodyPlace& parent = bodies_[joint.parent];
       if (joint.coordinates.empty()) {
         bodies_[b] = {parent.link, weld(joint, parent.in_link)};
       } else {
         Link link;
         link.parent = parent.link;
         link.coordinates = joint.coordinates;
-        link.ancestors = links_[at(parent.link)].ancestors;
+        link.ancestors = links_[parent.link].ancestors;
         const Placement child = compile_joint(joint, parent.in_link, link);
         for (const int c : joint.coordinates) {
-          if (c < 0 || at(c) >= coordinate_link_.size() || coordinate_link_[at(c)] >= 0) {
+          if (c < 0 || at(c) >= coordinate_link_.size() || coordinate_link_[c] >= 0) {
             throw InputError(fmt::format("joint '{}'", joint.name),
                              "a coordinate of it is not among the model's or belongs to another joint");
           }
-          coordinate_link_[at(c)] = links();
+          coordinate_link_[c] = links();
           link.ancestors.push_back(c);
-          chain_length_[at(c)] = link.ancestors.size();
+          chain_length_[c] = link.ancestors.size();
           topological_.push_back(c);
         }
         bodies_[b] = {links(), child};
         links_.push_back(std::move(link));
       }
-      add_mass(links_[at(bodies_[b].link)], model.bodies[b], bodies_[b].in_link);
+      add_mass(links_[bodies_[b].link], model.bodies[b], bodies_[b].in_link);
     }
   }
   for (std::size_t c = 0; c < coordinate_link_.size(); ++c) {

@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/dynamics/spatial.hpp"
 #include "veridyn/muscle/model/model.hpp"
 
@@ -69,24 +68,23 @@ class Mechanism {
 
   [[nodiscard]] int links() const { return static_cast<int>(links_.size()); }
   [[nodiscard]] int coordinates() const { return static_cast<int>(coordinate_link_.size()); }
-  [[nodiscard]] const Link& link(int index) const { return links_[at(index)]; }
+  [[nodiscard]] const Link& link(int index) const { return links_[index]; }
   /// The link that carries a body of the model, and the body's frame in it.
-  [[nodiscard]] const BodyPlace& body(int index) const { return bodies_[at(index)]; }
+  [[nodiscard]] const BodyPlace& body(int index) const { return bodies_[index]; }
   /// The link whose joint a coordinate belongs to: it and the links beyond it move.
-  [[nodiscard]] int link_of_coordinate(int coordinate) const { return coordinate_link_[at(coordinate)]; }
+  [[nodiscard]] int link_of_coordinate(int coordinate) const { return coordinate_link_[coordinate]; }
   /// Coordinates that move this link, the ground's side first.
   [[nodiscard]] std::span<const int> ancestors(int link_index) const { return link(link_index).ancestors; }
   [[nodiscard]] bool moves(int coordinate, int link_index) const;
   /// Coordinates that move what this coordinate moves, ground's side first; this one is the last. Every shorter
   /// beginning of it is the same list of the coordinate it ends with.
   [[nodiscard]] std::span<const int> chain(int coordinate) const {
-    const auto c = static_cast<std::size_t>(coordinate);
-    return {links_[at(coordinate_link_[c])].ancestors.data(), chain_length_[c]};
+    return {links_[coordinate_link_[coordinate]].ancestors.data(), chain_length_[coordinate]};
   }
   /// Where the row of this coordinate begins when rows as long as their chains are stored one after another; the total
   /// for `coordinates()`.
-  [[nodiscard]] std::size_t row(int coordinate) const { return row_[at(coordinate)]; }
-  [[nodiscard]] const std::string& coordinate_name(int coordinate) const { return coordinate_names_[at(coordinate)]; }
+  [[nodiscard]] std::size_t row(int coordinate) const { return row_[coordinate]; }
+  [[nodiscard]] const std::string& coordinate_name(int coordinate) const { return coordinate_names_[coordinate]; }
   [[nodiscard]] const Eigen::Vector3d& gravity() const { return gravity_; }
   /// All coordinates, ground's side first.
   [[nodiscard]] std::span<const int> topological_coordinates() const { return topological_; }
@@ -141,7 +139,7 @@ void update_velocities(const Mechanism& mechanism, const Scalar* qdot, Kinematic
 template <typename Scalar>
 [[nodiscard]] Pose<Scalar> body_pose(const Mechanism& mechanism, const Kinematics<Scalar>& kinematics, int body) {
   const Mechanism::BodyPlace& place = mechanism.body(body);
-  const Pose<Scalar>& link = kinematics.pose[at(place.link)];
+  const Pose<Scalar>& link = kinematics.pose[place.link];
   return {link.rotation * place.in_link.rotation.cast<Scalar>(), link * place.in_link.translation};
 }
 
@@ -194,8 +192,8 @@ void update_positions(const Mechanism& mechanism, const Scalar* q, Kinematics<Sc
   auto* motion = k.axis_motion.data();
   for (int i = 1; i < mechanism.links(); ++i) {
     const Link& link = mechanism.link(i);
-    const Pose<Scalar>& parent = k.pose[at(link.parent)];
-    Pose<Scalar>& pose = k.pose[at(i)];
+    const Pose<Scalar>& parent = k.pose[link.parent];
+    Pose<Scalar>& pose = k.pose[i];
     const bool grounded = link.parent == 0;  // nothing to turn
     if (grounded) {
       pose.position = link.origin.cast<Scalar>();
@@ -204,7 +202,7 @@ void update_positions(const Mechanism& mechanism, const Scalar* q, Kinematics<Sc
     }
     if (link.simple) {
       const JointAxis& axis = link.axes[0];
-      SpatialVector<Scalar>& column = k.columns[at(axis.coordinate)];
+      SpatialVector<Scalar>& column = k.columns[axis.coordinate];
       const Scalar amount = axis.slope * q[axis.coordinate] + axis.intercept;
       if (axis.rotational) {
         if (grounded) {
@@ -245,10 +243,10 @@ void update_positions(const Mechanism& mechanism, const Scalar* q, Kinematics<Sc
       }
       ++motion;
     }
-    for (const int c : link.coordinates) k.columns[at(c)] = {};
+    for (const int c : link.coordinates) k.columns[c] = {};
     const auto* m = first;
     for (const JointAxis& axis : link.axes) {
-      k.columns[at(axis.coordinate)].add_scaled(m->slope, m->unit);
+      k.columns[axis.coordinate].add_scaled(m->slope, m->unit);
       ++m;
     }
   }
@@ -259,12 +257,12 @@ void update_velocities(const Mechanism& mechanism, const Scalar* qdot, Kinematic
   const auto* motion = k.axis_motion.data();
   for (int i = 1; i < mechanism.links(); ++i) {
     const Link& link = mechanism.link(i);
-    const SpatialVector<Scalar>& parent = k.velocity[at(link.parent)];
-    SpatialVector<Scalar>& V = k.velocity[at(i)];
-    SpatialVector<Scalar>& bias = k.velocity_bias[at(i)];
+    const SpatialVector<Scalar>& parent = k.velocity[link.parent];
+    SpatialVector<Scalar>& V = k.velocity[i];
+    SpatialVector<Scalar>& bias = k.velocity_bias[i];
     if (link.simple) {
       const int c = link.axes[0].coordinate;
-      const SpatialVector<Scalar>& column = k.columns[at(c)];
+      const SpatialVector<Scalar>& column = k.columns[c];
       const SpatialVector<Scalar> relative{column.angular * qdot[c], column.linear * qdot[c]};
       if (link.parent == 0) {
         V = relative;

@@ -1,7 +1,5 @@
 #include "veridyn/muscle/dynamics/skeleton.hpp"
 
-#include "veridyn/core/index.hpp"
-
 namespace veridyn::muscle {
 
 std::vector<Polyline> bones(const Model& model, const Mechanism& mechanism, const Kinematics<double>& kinematics) {
@@ -15,7 +13,7 @@ std::vector<Polyline> bones(const Model& model, const Mechanism& mechanism, cons
     }
     for (const Joint& j : model.joints) {
       if (j.parent != static_cast<int>(b)) continue;
-      const Body& child = model.bodies[at(j.child)];
+      const Body& child = model.bodies[j.child];
       // What is welded on, such as a load, makes no stick.
       if (j.coordinates.empty() && child.mass_center.isZero(0.0)) continue;
       carries = true;

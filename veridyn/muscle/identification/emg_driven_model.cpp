@@ -43,7 +43,7 @@ class MuscleShare {
         const MuscleOutput& output = outputs_[o];
         const std::size_t row = k * outputs_.size() + o;
         if (output.kind == MuscleOutputKind::kMoment) {
-          add(k, row, segment_.arm(signed_index(k), signed_index(o * muscles_ + muscle)), true);
+          add(k, row, segment_.arm(k, o * muscles_ + muscle), true);
         } else if (at(output.index) == muscle) {
           add(k, row, 1.0, output.kind == MuscleOutputKind::kTendonForce);
         }
@@ -78,12 +78,11 @@ EmgSegment along_motion(const MusculoskeletalSystem& system, const Motion& motio
   const MotionAnalysis table = analyse_motion(system, motion, rest, grid);
   const std::size_t muscles = system.muscles().size();
   for (std::size_t m = 0; m < muscles; ++m) {
-    const std::vector<double> length(table.path_length.col(signed_index(m)).begin(),
-                                     table.path_length.col(signed_index(m)).end());
+    const std::vector<double> length(table.path_length.col(m).begin(), table.path_length.col(m).end());
     segment.length.push_back(numerics::PiecewisePolynomial::quintic_spline(grid, length));
   }
   const MotionAnalysis poses = analyse_motion(system, motion, rest, segment.time);
-  segment.arm.setZero(signed_index(segment.time.size()), signed_index(outputs.size() * muscles));
+  segment.arm.setZero(segment.time.size(), outputs.size() * muscles);
   SystemEvaluator<double> evaluator(system);
   for (Eigen::Index k = 0; k < segment.arm.rows(); ++k) {
     evaluator.set_all(poses.q.row(k).data(), poses.qdot.row(k).data());
@@ -92,7 +91,7 @@ EmgSegment along_motion(const MusculoskeletalSystem& system, const Motion& motio
       if (outputs[o].kind != MuscleOutputKind::kMoment) continue;
       for (std::size_t p = 0; p < system.pairs().size(); ++p) {
         const auto& pair = system.pairs()[p];
-        segment.arm(k, signed_index(o * muscles + at(pair.muscle))) -=
+        segment.arm(k, o * muscles + at(pair.muscle)) -=
             evaluator.path_gradient()[p] * system.reduction().share_in(pair.coordinate, outputs[o].index, slope.data());
       }
     }
@@ -130,7 +129,7 @@ bool EmgDrivenModel::acts(std::size_t segment, std::size_t muscle) const {
   for (std::size_t o = 0; o < chosen_.size(); ++o) {
     if (chosen_[o].kind != MuscleOutputKind::kMoment && at(chosen_[o].index) == muscle) return true;
     if (chosen_[o].kind == MuscleOutputKind::kMoment &&
-        !segments_[segment].arm.col(signed_index(o * alone_.size() + muscle)).isZero(0.0))
+        !segments_[segment].arm.col(o * alone_.size() + muscle).isZero(0.0))
       return true;
   }
   return false;
@@ -138,7 +137,7 @@ bool EmgDrivenModel::acts(std::size_t segment, std::size_t muscle) const {
 
 MuscleAlongPath EmgDrivenModel::along(std::size_t segment, std::size_t m, const MuscleValues& values) const {
   const EmgSegment& s = segments_[segment];
-  const MuscleControls& controls = signal_of_[m] >= 0 ? s.emg[at(signal_of_[m])] : least_[m];
+  const MuscleControls& controls = signal_of_[m] >= 0 ? s.emg[signal_of_[m]] : least_[m];
   return {alone_[m], s.length[m],       controls,       s.begin,        s.time,
           accuracy_, values.muscles[m], values.gain[m], values.delay[m]};
 }
@@ -159,7 +158,7 @@ bool EmgDrivenModel::respond(std::size_t segment, const Eigen::VectorXd& theta, 
   const EmgSegment& s = segments_[segment];
   const auto outputs = signed_index(chosen_.size());
   response.output.setZero(samples(segment), outputs);
-  response.sensitivity.setZero(samples(segment) * outputs, signed_index(active.size()));
+  response.sensitivity.setZero(samples(segment) * outputs, active.size());
   const MuscleValues values = values_at(system_->muscles(), unknowns_, theta);
   if (!values.possible()) return false;
   const MuscleShare share(s, chosen_, alone_.size());
@@ -169,7 +168,7 @@ bool EmgDrivenModel::respond(std::size_t segment, const Eigen::VectorXd& theta, 
     std::vector<PathMuscleColumn> columns;
     std::vector<ChainedColumn> chained, by_strength;
     for (std::size_t c = 0; c < active.size(); ++c) {
-      const MuscleUnknown& u = unknowns_[at(active[c])];
+      const MuscleUnknown& u = unknowns_[active[c]];
       for (const MuscleParameterName& name : u.parameters) {
         if (at(name.muscle) != m) continue;
         const bool scaled = u.factor && !name.of_excitation();
@@ -189,12 +188,11 @@ bool EmgDrivenModel::respond(std::size_t segment, const Eigen::VectorXd& theta, 
     if (!simulate_along_path(along(segment, m, values), columns, out)) return false;
     share.for_each(m, [&](std::size_t k, std::size_t row, double factor, bool of_force) {
       response.output.data()[row] += factor * (of_force ? out.force[k] : out.fiber_length[k]);
-      auto to = response.sensitivity.row(signed_index(row));
+      auto to = response.sensitivity.row(row);
       const estimation::RowMatrix& by = of_force ? out.force_by : out.fiber_by;
-      for (std::size_t j = 0; j < chained.size(); ++j)
-        to(signed_index(chained[j].to)) += factor * chained[j].weight * by(signed_index(k), signed_index(j));
+      for (std::size_t j = 0; j < chained.size(); ++j) to(chained[j].to) += factor * chained[j].weight * by(k, j);
       for (const ChainedColumn& c : by_strength)
-        if (of_force) to(signed_index(c.to)) += factor * c.weight * out.force[k];
+        if (of_force) to(c.to) += factor * c.weight * out.force[k];
     });
   }
   return response.output.allFinite() && response.sensitivity.allFinite();
@@ -229,7 +227,7 @@ bool EmgDrivenModel::error_response(std::size_t segment, const Eigen::VectorXd& 
     if (!simulate_along_path(along(segment, m, values), columns, out)) return false;
     share.for_each(m, [&](std::size_t k, std::size_t row, double factor, bool of_force) {
       const estimation::RowMatrix& by = of_force ? out.force_by : out.fiber_by;
-      response.row(signed_index(row)).segment(knots * signal_of_[m], knots) += factor * by.row(signed_index(k));
+      response.row(row).segment(knots * signal_of_[m], knots) += factor * by.row(k);
     });
   }
   return response.allFinite();
@@ -243,7 +241,7 @@ std::vector<double> EmgDrivenModel::saturation(std::size_t segment, const Eigen:
     if (signal_of_[m] < 0) continue;
     for (const double t : s.time) {
       double e = 0.0;
-      s.emg[at(signal_of_[m])].excitation.evaluate(t - values.delay[m], &e);
+      s.emg[signal_of_[m]].excitation.evaluate(t - values.delay[m], &e);
       if (values.gain[m] * e > 1.0) share[m] += 1.0 / static_cast<double>(s.time.size());
     }
   }

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/identification/task_segments.hpp"
 
 namespace veridyn::muscle {
@@ -37,13 +36,13 @@ class EmgEstimation {
 
   EmgEstimate run() {
     const auto parameters = model_.parameters();
-    Eigen::VectorXd theta(signed_index(parameters.size()));
-    for (std::size_t i = 0; i < parameters.size(); ++i) theta(signed_index(i)) = parameters[i].start;
+    Eigen::VectorXd theta(parameters.size());
+    for (std::size_t i = 0; i < parameters.size(); ++i) theta(i) = parameters[i].start;
     TaskEstimate first;
     double seconds = 0.0;
     for (int round = 0; round < kMostRounds && !progress_.interrupted(); ++round) {
       if (!set_units(theta)) break;
-      const Eigen::VectorXd one = Eigen::VectorXd::Ones(signed_index(model_.outputs().size()));
+      const Eigen::VectorXd one = Eigen::VectorXd::Ones(model_.outputs().size());
       result_.estimate = estimate_from_tasks(*result_.model, result_.measured, one, options_, progress_);
       seconds += result_.estimate.seconds;
       if (!result_.estimate.usable()) break;
@@ -111,7 +110,7 @@ class EmgEstimation {
     double largest = 0.0;
     for (std::size_t i = 0; i < model_.parameters().size(); ++i) {
       const double sigma = result_.estimate.best.parameters[i].sigma;
-      const double change = std::abs(result_.estimate.best.theta(signed_index(i)) - before(signed_index(i)));
+      const double change = std::abs(result_.estimate.best.theta(i) - before(i));
       if (sigma > 0.0 && std::isfinite(sigma)) largest = std::max(largest, change / sigma);
     }
     return largest;

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/index.hpp"
 
 namespace veridyn::muscle {
 namespace {
@@ -69,7 +68,7 @@ Evidence check_sign(const EmgFindings& f) {
   std::vector<std::string> opposite;
   for (std::size_t o = 0; o < f.outputs.size(); ++o) {
     if (f.outputs[o].kind != MuscleOutputKind::kMoment) continue;
-    const double correlation = moments_of(f, signed_index(o), true).correlation();
+    const double correlation = moments_of(f, o, true).correlation();
     if (std::isnan(correlation)) continue;
     if (std::isnan(row.value) || correlation < row.value) row.value = correlation;
     if (correlation < kOpposite) opposite.push_back(std::string(f.model.outputs()[o].name));
@@ -101,7 +100,7 @@ Evidence check_explained(const EmgFindings& f) {
                .bears_on = Purpose::kParameters | Purpose::kPrediction};
   std::string worst;
   for (std::size_t o = 0; o < f.outputs.size(); ++o) {
-    const Moments m = moments_of(f, signed_index(o), false);
+    const Moments m = moments_of(f, o, false);
     if (!(m.measured > 0.0)) continue;
     const double share = 1.0 - m.error / m.measured;
     if (!worst.empty() && share >= row.value) continue;

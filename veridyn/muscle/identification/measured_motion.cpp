@@ -8,7 +8,6 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::muscle {
@@ -16,10 +15,10 @@ namespace {
 
 /// Column of an output; -1: none.
 int column_of(const SignalTable& table, const Model& model, const MuscleOutput& output) {
-  if (output.kind == MuscleOutputKind::kValue) return table.find(model.coordinates[at(output.index)].name, "value");
+  if (output.kind == MuscleOutputKind::kValue) return table.find(model.coordinates[output.index].name, "value");
   std::string name = output_name(model, output);
   if (output.kind == MuscleOutputKind::kMoment && output_unit(model, output) == "N" && table.find(name, "") < 0)
-    name = model.coordinates[at(output.index)].name + ".force";
+    name = model.coordinates[output.index].name + ".force";
   const std::size_t dot = name.rfind('.');
   for (std::size_t i = 0; i < table.names.size(); ++i) {
     for (const char separator : {'.', '_', '/'}) {
@@ -52,7 +51,7 @@ void refuse_degrees(const SignalTable& table, const Model& model) {
   for (const Coordinate& c : model.coordinates) {
     const int column = table.find(c.name, "value");
     if (column < 0 || c.motion != CoordinateMotion::kRotational) continue;
-    const std::vector<double>& v = table.values[at(column)];
+    const std::vector<double>& v = table.values[column];
     const double width = c.high - c.low, margin = 0.1 * width;
     double largest = 0.0;
     bool beyond = false, in_degrees = true;
@@ -67,7 +66,7 @@ void refuse_degrees(const SignalTable& table, const Model& model) {
                        fmt::format("'{}' goes to {:.4g} where the model's range is {:.4g} .. {:.4g} rad: these are "
                                    "degrees taken for radians, a factor of 57; write inDegrees=yes in its header, or "
                                    "radians",
-                                   table.names[at(column)], largest, c.low, c.high));
+                                   table.names[column], largest, c.low, c.high));
   }
 }
 
@@ -78,7 +77,7 @@ MeasuredMotion read_measured_motion(const SignalTable& table, const Model& model
   MeasuredMotion motion;
   motion.source = table.source;
   motion.time = table.time;
-  motion.values = estimation::RowMatrix::Constant(signed_index(table.time.size()), signed_index(outputs.size()), kNaN);
+  motion.values = estimation::RowMatrix::Constant(table.time.size(), outputs.size(), kNaN);
   bool any = false, moves = false;
   for (std::size_t j = 0; j < outputs.size(); ++j) {
     const int column = column_of(table, model, outputs[j]);
@@ -86,15 +85,15 @@ MeasuredMotion read_measured_motion(const SignalTable& table, const Model& model
     any = true;
     const MuscleOutput& output = outputs[j];
     const bool of_coordinate = output.kind == MuscleOutputKind::kValue || output.kind == MuscleOutputKind::kSpeed;
-    const bool rotation = of_coordinate && model.coordinates[at(output.index)].motion == CoordinateMotion::kRotational;
+    const bool rotation = of_coordinate && model.coordinates[output.index].motion == CoordinateMotion::kRotational;
     const double unit = rotation && table.rotations_in_degrees ? kDegree : 1.0;
     double low = kInfinity, high = -kInfinity;
     for (std::size_t k = 0; k < table.time.size(); ++k) {
-      const double value = unit * table.values[at(column)][k];
+      const double value = unit * table.values[column][k];
       if (!std::isfinite(value))
         throw InputError(table.source,
-                         fmt::format("column '{}' has no value at {:g} s", table.names[at(column)], table.time[k]));
-      motion.values(signed_index(k), signed_index(j)) = value;
+                         fmt::format("column '{}' has no value at {:g} s", table.names[column], table.time[k]));
+      motion.values(k, j) = value;
       low = std::min(low, value);
       high = std::max(high, value);
     }

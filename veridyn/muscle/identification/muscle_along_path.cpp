@@ -59,8 +59,8 @@ class PathSimulation {
   bool run(PathMuscleResponse& out) {
     out.force.assign(m_.time.size(), 0.0);
     out.fiber_length.assign(m_.time.size(), 0.0);
-    out.force_by.setZero(signed_index(m_.time.size()), signed_index(n_));
-    out.fiber_by.setZero(signed_index(m_.time.size()), signed_index(n_));
+    out.force_by.setZero(m_.time.size(), n_);
+    out.fiber_by.setZero(m_.time.size(), n_);
     response_ = &out;
     out.trouble.clear();
     double t = m_.begin;
@@ -173,9 +173,9 @@ class PathSimulation {
         now_.fiber_velocity = velocity.a;
         now_.force = force.a;
         for (std::size_t i = 0; i < 3; ++i) {
-          now_.activation_by[i] = rate.v(signed_index(i));
-          now_.velocity_by[i] = velocity.v(signed_index(i));
-          now_.force_by[i] = force.v(signed_index(i));
+          now_.activation_by[i] = rate.v(i);
+          now_.velocity_by[i] = velocity.v(i);
+          now_.force_by[i] = force.v(i);
         }
       }
       for (std::size_t i = 0; i < pass.column.size(); ++i) {
@@ -252,15 +252,14 @@ class PathSimulation {
     for (std::size_t j = 0; j < n_; ++j) {
       const double by =
           now_.force_by[0] * Sa[j] + now_.force_by[1] * Sl[j] + now_.force_by[2] * weight_[j] + now_.force_field[j];
-      out.force_by(signed_index(k), signed_index(j)) = by / unit_[j];
-      if (elastic_) out.fiber_by(signed_index(k), signed_index(j)) = Sl[j] / unit_[j];
+      out.force_by(k, j) = by / unit_[j];
+      if (elastic_) out.fiber_by(k, j) = Sl[j] / unit_[j];
     }
     for (const Pass& pass : passes_) {
       if (elastic_) break;
       const SimulationJet fiber = rigid_fiber(pass.parameters, SimulationJet(path.value));
       for (std::size_t i = 0; i < pass.column.size(); ++i)
-        out.fiber_by(signed_index(k), signed_index(pass.column[i])) =
-            fiber.v(kFirstField + signed_index(i)) / unit_[pass.column[i]];
+        out.fiber_by(k, pass.column[i]) = fiber.v(kFirstField + signed_index(i)) / unit_[pass.column[i]];
     }
   }
 

@@ -5,7 +5,6 @@
 #include <array>
 
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/core/nearest.hpp"
 
 namespace veridyn::muscle {
@@ -45,18 +44,18 @@ std::string output_name(const Model& model, const MuscleOutput& output) {
   for (const OutputWord& word : kWords) {
     if (word.kind != output.kind) continue;
     const std::string owner =
-        word.of_muscle ? std::string(model.muscles[at(output.index)].name()) : model.coordinates[at(output.index)].name;
+        word.of_muscle ? std::string(model.muscles[output.index].name()) : model.coordinates[output.index].name;
     return fmt::format("{}.{}", owner, word.suffix);
   }
-  return model.coordinates[at(output.index)].name;
+  return model.coordinates[output.index].name;
 }
 
 std::string output_unit(const Model& model, const MuscleOutput& output) {
   switch (output.kind) {
     case MuscleOutputKind::kSpeed:
-      return model.coordinates[at(output.index)].unit() + "/s";
+      return model.coordinates[output.index].unit() + "/s";
     case MuscleOutputKind::kMoment:
-      return model.coordinates[at(output.index)].unit() == "m" ? "N" : "N m";
+      return model.coordinates[output.index].unit() == "m" ? "N" : "N m";
     case MuscleOutputKind::kFiberLength:
       return "m";
     case MuscleOutputKind::kTendonForce:
@@ -64,7 +63,7 @@ std::string output_unit(const Model& model, const MuscleOutput& output) {
     case MuscleOutputKind::kValue:
       break;
   }
-  return model.coordinates[at(output.index)].unit();
+  return model.coordinates[output.index].unit();
 }
 
 }  // namespace veridyn::muscle

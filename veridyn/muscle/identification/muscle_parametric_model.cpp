@@ -93,7 +93,7 @@ void MuscleParametricModel::list_initial_conditions(bool estimate) {
     std::vector<estimation::ModelParameter> initial;
     for (const bool speed : {false, true}) {
       for (const int c : system_of(s).reduction().free()) {
-        const Coordinate& coordinate = system_->model().coordinates[at(c)];
+        const Coordinate& coordinate = system_->model().coordinates[c];
         initial.push_back({.name = coordinate.name + (speed ? ".start_speed" : ".start"),
                            .unit = coordinate.unit() + (speed ? "/s" : ""),
                            .start = speed ? segments_[s].start.qdot(c) : segments_[s].start.q(c),
@@ -105,10 +105,10 @@ void MuscleParametricModel::list_initial_conditions(bool estimate) {
 }
 
 Eigen::VectorXd MuscleParametricModel::output_noise() const {
-  Eigen::VectorXd noise(signed_index(chosen_.size()));
+  Eigen::VectorXd noise(chosen_.size());
   for (std::size_t i = 0; i < chosen_.size(); ++i) {
     if (!(chosen_[i].noise_sd > 0.0)) return {};
-    noise(signed_index(i)) = chosen_[i].noise_sd;
+    noise(i) = chosen_[i].noise_sd;
   }
   return noise;
 }
@@ -117,7 +117,7 @@ bool MuscleParametricModel::respond(std::size_t segment, const Eigen::VectorXd& 
                                     std::span<const Eigen::Index> active, estimation::ModelResponse& response) const {
   const auto outputs = signed_index(chosen_.size());
   response.output.resize(samples(segment), outputs);
-  response.sensitivity.resize(samples(segment) * outputs, signed_index(active.size()));
+  response.sensitivity.resize(samples(segment) * outputs, active.size());
   const internal::MuscleTask task{&system_of(segment), &segments_[segment], unknowns_, chosen_, accuracy_};
   const bool usable = active.empty() ? internal::simulate_values(task, theta, response)
                                      : internal::simulate_tangents(task, theta, active, response);
@@ -125,12 +125,11 @@ bool MuscleParametricModel::respond(std::size_t segment, const Eigen::VectorXd& 
 }
 
 std::string MuscleParametricModel::trouble(std::size_t segment, const Eigen::VectorXd& theta) const {
-  Eigen::VectorXd all(signed_index(parameters_.size() + initial_[segment].size()));
-  all.head(signed_index(parameters_.size())) = theta.head(signed_index(parameters_.size()));
-  for (std::size_t i = 0; i < initial_[segment].size(); ++i)
-    all(signed_index(parameters_.size() + i)) = initial_[segment][i].start;
+  Eigen::VectorXd all(parameters_.size() + initial_[segment].size());
+  all.head(parameters_.size()) = theta.head(parameters_.size());
+  for (std::size_t i = 0; i < initial_[segment].size(); ++i) all(parameters_.size() + i) = initial_[segment][i].start;
   estimation::ModelResponse response;
-  response.output.resize(samples(segment), signed_index(chosen_.size()));
+  response.output.resize(samples(segment), chosen_.size());
   const internal::MuscleTask task{&system_of(segment), &segments_[segment], unknowns_, chosen_, accuracy_};
   std::string why;
   return internal::simulate_values(task, all, response, &why) ? std::string() : why;

@@ -32,7 +32,7 @@ numerics::StepControl step_control(double accuracy) {
 /// unknown over its size, so that all are of the order of the state.
 double size_of(const MuscleTask& task, Eigen::Index unknown) {
   if (at(unknown) >= task.unknowns.size()) return 1.0;
-  const MuscleUnknown& u = task.unknowns[at(unknown)];
+  const MuscleUnknown& u = task.unknowns[unknown];
   // A start may be next to nothing, as that of a delay.
   constexpr double kOfRange = 0.1;
   const double range = u.high - u.low;
@@ -43,7 +43,7 @@ double size_of(const MuscleTask& task, Eigen::Index unknown) {
 /// Initial motion, and the activations that muscles start with.
 void set_start(const MuscleTask& task, const Eigen::VectorXd& theta, std::vector<double>& x) {
   const std::size_t free = task.system->layout().free;
-  for (std::size_t i = 0; i < 2 * free; ++i) x[i] = theta(signed_index(task.unknowns.size() + i));
+  for (std::size_t i = 0; i < 2 * free; ++i) x[i] = theta(task.unknowns.size() + i);
 }
 
 const double* start_activation(const MuscleTask& task, ShapedControls& controls) {
@@ -85,16 +85,16 @@ double muscle_moment(SystemEvaluator<double>& e, const MusculoskeletalSystem& sy
   const double* slope = e.dynamics().state().slope.data();
   double moment = 0.0;
   for (std::size_t p = 0; p < pairs.size(); ++p)
-    moment -= e.tendon_force()[at(pairs[p].muscle)] * e.path_gradient()[p] *
+    moment -= e.tendon_force()[pairs[p].muscle] * e.path_gradient()[p] *
               system.reduction().share_in(pairs[p].coordinate, coordinate, slope);
   return moment;
 }
 
 double fiber_length_of(const SystemEvaluator<double>& e, const MusculoskeletalSystem& system,
                        const MuscleValues& parameters, int muscle) {
-  if (system.layout().fiber_length[at(muscle)] >= 0) return e.fiber_length()[at(muscle)];
-  const MusculotendonParameters<double>& p = parameters.muscles[at(muscle)];
-  return std::hypot(std::max(0.0, e.path_length()[at(muscle)] - p.tendon_slack_length),
+  if (system.layout().fiber_length[muscle] >= 0) return e.fiber_length()[muscle];
+  const MusculotendonParameters<double>& p = parameters.muscles[muscle];
+  return std::hypot(std::max(0.0, e.path_length()[muscle] - p.tendon_slack_length),
                     p.optimal_fiber_length * std::sin(p.pennation_angle_at_optimal));
 }
 
@@ -178,7 +178,7 @@ class TangentSimulation {
     double reached_s = begin;
     const bool reached = integrate(task_, controls_, stepper_, derivative, reached_s, x_.data(), on_step,
                                    [&](double t) { add_jumps(t); });
-    for (std::size_t j = 0; j < columns_; ++j) response_.sensitivity.col(signed_index(j)) /= column_size_[j];
+    for (std::size_t j = 0; j < columns_; ++j) response_.sensitivity.col(j) /= column_size_[j];
     return reached && good && row_ == task_.segment->time.size();
   }
 
@@ -228,7 +228,7 @@ class TangentSimulation {
       const MuscleOutput& output = task_.outputs[o];
       const std::size_t at_row = row_ * task_.outputs.size() + o;
       double* const row = response_.sensitivity.data() + at_row * columns_;
-      double& value = response_.output(signed_index(row_), signed_index(o));
+      double& value = response_.output(row_, o);
       const std::size_t index = at(output.index);
       if (output.kind == MuscleOutputKind::kTendonForce) {
         value = linearization_.tendon_force(index);
@@ -302,10 +302,10 @@ bool simulate_values(const MuscleTask& task, const Eigen::VectorXd& theta, estim
     if (!simple && !at_sample->derivative(state, controls.at(t), rate.data())) good = false;
     for (std::size_t o = 0; o < task.outputs.size(); ++o) {
       const MuscleOutput& output = task.outputs[o];
-      double& value = response.output(signed_index(row), signed_index(o));
+      double& value = response.output(row, o);
       switch (output.kind) {
         case MuscleOutputKind::kTendonForce:
-          value = at_sample->tendon_force()[at(output.index)];
+          value = at_sample->tendon_force()[output.index];
           continue;
         case MuscleOutputKind::kFiberLength:
           value = fiber_length_of(*at_sample, system, parameters, output.index);

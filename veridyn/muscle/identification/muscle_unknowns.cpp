@@ -6,7 +6,6 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/core/nearest.hpp"
 
 namespace veridyn::muscle {
@@ -16,11 +15,11 @@ namespace {
 double model_value(const Model& model, const MuscleParameterName& name) {
   if (name.field == MuscleParameterName::kGain) return 1.0;
   if (name.field == MuscleParameterName::kDelay) return 0.0;
-  return field_of(model.muscles[at(name.muscle)].parameters.musculotendon, name.field);
+  return field_of(model.muscles[name.muscle].parameters.musculotendon, name.field);
 }
 
 std::string full_name(const Model& model, const MuscleParameterName& name) {
-  return fmt::format("{}.{}", model.muscles[at(name.muscle)].name(), parameter_field(name.field).name);
+  return fmt::format("{}.{}", model.muscles[name.muscle].name(), parameter_field(name.field).name);
 }
 
 std::size_t find_field(std::string_view field, std::string_view text, std::string_view place) {
@@ -141,7 +140,7 @@ MuscleUnknown make_unknown(const Model& model, const MuscleUnknownSpec& spec, st
 MuscleUnknown unknown_of(const Model& model, const MuscleParameterName& name) {
   return make_unknown(model,
                       {.name = full_name(model, name),
-                       .muscles = {std::string(model.muscles[at(name.muscle)].name())},
+                       .muscles = {std::string(model.muscles[name.muscle].name())},
                        .fields = {parameter_field(name.field).name}},
                       full_name(model, name));
 }

@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "veridyn/core/index.hpp"
-
 namespace veridyn::muscle {
 
 double& MuscleValues::at_name(const MuscleParameterName& name) {
-  if (name.field == MuscleParameterName::kGain) return gain[at(name.muscle)];
-  if (name.field == MuscleParameterName::kDelay) return delay[at(name.muscle)];
-  return field_of(muscles[at(name.muscle)], name.field);
+  if (name.field == MuscleParameterName::kGain) return gain[name.muscle];
+  if (name.field == MuscleParameterName::kDelay) return delay[name.muscle];
+  return field_of(muscles[name.muscle], name.field);
 }
 
 bool MuscleValues::possible() const {
@@ -33,7 +31,7 @@ MuscleValues values_at(const MuscleGroup<double>& muscles, std::span<const Muscl
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
     for (const MuscleParameterName& name : unknowns[i].parameters) {
       double& value = values.at_name(name);
-      value = unknowns[i].factor ? value * theta(signed_index(i)) : theta(signed_index(i));
+      value = unknowns[i].factor ? value * theta(i) : theta(i);
     }
   }
   return values;

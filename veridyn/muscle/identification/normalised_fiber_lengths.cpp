@@ -25,9 +25,9 @@ std::vector<SharedCoordinate> shared_coordinates(const MusculoskeletalSystem& re
   std::vector<SharedCoordinate> shared;
   const std::span<const int> of_reference = reference.reduction().free(), of_subject = subject.reduction().free();
   for (std::size_t r = 0; r < of_reference.size(); ++r) {
-    const Coordinate& a = reference.model().coordinates[at(of_reference[r])];
+    const Coordinate& a = reference.model().coordinates[of_reference[r]];
     for (std::size_t s = 0; s < of_subject.size(); ++s) {
-      const Coordinate& b = subject.model().coordinates[at(of_subject[s])];
+      const Coordinate& b = subject.model().coordinates[of_subject[s]];
       if (a.name != b.name) continue;
       const double low = std::max(a.low, b.low), high = std::min(a.high, b.high);
       if (low <= high) shared.push_back({r, s, low, high});
@@ -41,15 +41,15 @@ Eigen::MatrixXd path_lengths(const MusculoskeletalSystem& system, const Eigen::M
                              const std::vector<SharedCoordinate>& shared, std::size_t SharedCoordinate::*which) {
   const std::span<const int> free = system.reduction().free();
   std::vector<double> z(free.size()), zdot(free.size(), 0.0);
-  for (std::size_t i = 0; i < free.size(); ++i) z[i] = system.model().coordinates[at(free[i])].default_value;
+  for (std::size_t i = 0; i < free.size(); ++i) z[i] = system.model().coordinates[free[i]].default_value;
   SystemEvaluator<double> evaluator(system);
-  Eigen::MatrixXd length(points.rows(), signed_index(system.muscles().size()));
+  Eigen::MatrixXd length(points.rows(), system.muscles().size());
   for (Eigen::Index p = 0; p < points.rows(); ++p) {
     for (std::size_t c = 0; c < shared.size(); ++c)
-      z[shared[c].*which] = shared[c].low + points(p, signed_index(c)) * (shared[c].high - shared[c].low);
+      z[shared[c].*which] = shared[c].low + points(p, c) * (shared[c].high - shared[c].low);
     evaluator.set_motion(z.data(), zdot.data());
     const std::span<const double> found = evaluator.path_length();
-    for (std::size_t m = 0; m < found.size(); ++m) length(p, signed_index(m)) = found[m];
+    for (std::size_t m = 0; m < found.size(); ++m) length(p, m) = found[m];
   }
   return length;
 }
@@ -111,14 +111,14 @@ MatchedFiber match(const MuscleParameters& reference, const MuscleParameters& su
                     states.size(), reference_path.size());
     return result;
   }
-  Eigen::MatrixX2d A(signed_index(states.size()), 2);
+  Eigen::MatrixX2d A(states.size(), 2);
   for (std::size_t i = 0; i < states.size(); ++i) {
     // The subject's pennation, at the reference's normalised length.
     const double sine = std::sin(subject.musculotendon.pennation_angle_at_optimal) / states[i].fiber;
-    A(signed_index(i), 0) = sine < 1.0 ? states[i].fiber * std::sqrt(1.0 - sine * sine) : states[i].along;
-    A(signed_index(i), 1) = states[i].tendon;
+    A(i, 0) = sine < 1.0 ? states[i].fiber * std::sqrt(1.0 - sine * sine) : states[i].along;
+    A(i, 1) = states[i].tendon;
   }
-  const Eigen::Map<const Eigen::VectorXd> b(paths.data(), signed_index(paths.size()));
+  const Eigen::Map<const Eigen::VectorXd> b(paths.data(), paths.size());
   const std::optional<Eigen::Vector2d> x = positive_solution(A, b);
   if (!x) {
     result.obstacle = "no positive lengths fit: its path does not change as the reference's does";
@@ -156,7 +156,7 @@ std::vector<MatchedFiber> match_fiber_lengths(const MusculoskeletalSystem& refer
       fiber.obstacle = "the reference has no muscle of that name";
     } else {
       fiber = match(reference.muscles().settings(at(counterpart)), subject.muscles().settings(m),
-                    of_reference.col(counterpart), of_subject.col(signed_index(m)));
+                    of_reference.col(counterpart), of_subject.col(m));
     }
     fiber.muscle = static_cast<int>(m);
     result.push_back(std::move(fiber));

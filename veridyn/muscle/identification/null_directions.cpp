@@ -19,7 +19,7 @@ std::string words_of(std::span<const estimation::ModelParameter> parameters, con
   for (Eigen::Index i = 0; i < v.size(); ++i) {
     if (std::abs(v(i)) < std::abs(v(largest)) / 3.0) continue;
     std::string& side = sign * v(i) > 0.0 ? raised : lowered;
-    side += (side.empty() ? "" : ", ") + parameters[at(i)].name;
+    side += (side.empty() ? "" : ", ") + parameters[i].name;
   }
   return lowered.empty() ? raised : fmt::format("{} against {}", raised, lowered);
 }
@@ -32,12 +32,12 @@ NullDirections null_directions(std::span<const estimation::ModelParameter> param
   const auto all = signed_index(parameters.size());
   std::vector<Eigen::Index> free;
   for (Eigen::Index i = 0; i < all; ++i)
-    if (!parameters[at(i)].fixed) free.push_back(i);
+    if (!parameters[i].fixed) free.push_back(i);
   const auto n = signed_index(free.size());
   Eigen::MatrixXd scaled = covariance(free, free);
   for (Eigen::Index i = 0; i < n; ++i) {
-    scaled.row(i) /= parameters[at(free[at(i)])].prior_sigma;
-    scaled.col(i) /= parameters[at(free[at(i)])].prior_sigma;
+    scaled.row(i) /= parameters[free[i]].prior_sigma;
+    scaled.col(i) /= parameters[free[i]].prior_sigma;
   }
   if (!scaled.allFinite()) return out;
   const auto eigen = numerics::symmetric_eigen(scaled);
@@ -49,8 +49,8 @@ NullDirections null_directions(std::span<const estimation::ModelParameter> param
     out.texts.push_back(words_of(parameters, direction));
     found.push_back(direction);
   }
-  out.vectors.resize(all, signed_index(found.size()));
-  for (std::size_t j = 0; j < found.size(); ++j) out.vectors.col(signed_index(j)) = found[j];
+  out.vectors.resize(all, found.size());
+  for (std::size_t j = 0; j < found.size(); ++j) out.vectors.col(j) = found[j];
   return out;
 }
 

@@ -9,7 +9,6 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/identification/task_segments.hpp"
 #include "veridyn/muscle/tasks/task_error.hpp"
 
@@ -27,9 +26,9 @@ std::vector<std::size_t> searched(const MuscleParametricModel& model) {
 
 Eigen::VectorXd all_unknowns(const MuscleParametricModel& model, const std::vector<std::size_t>& list,
                              const Eigen::VectorXd& x) {
-  Eigen::VectorXd theta(signed_index(model.unknowns().size()));
-  for (std::size_t i = 0; i < model.unknowns().size(); ++i) theta(signed_index(i)) = model.unknowns()[i].start;
-  for (std::size_t k = 0; k < list.size(); ++k) theta(signed_index(list[k])) = x(signed_index(k));
+  Eigen::VectorXd theta(model.unknowns().size());
+  for (std::size_t i = 0; i < model.unknowns().size(); ++i) theta(i) = model.unknowns()[i].start;
+  for (std::size_t k = 0; k < list.size(); ++k) theta(list[k]) = x(k);
   return theta;
 }
 
@@ -58,13 +57,13 @@ estimation::BlackBoxProblem problem_of(const MuscleParametricModel& model,
                                        const PublishedRouteOptions& options) {
   const std::vector<std::size_t> list = searched(model);
   estimation::BlackBoxProblem p{.name = "muscles by the published route"};
-  p.low.resize(signed_index(list.size()));
-  p.high.resize(signed_index(list.size()));
+  p.low.resize(list.size());
+  p.high.resize(list.size());
   for (std::size_t k = 0; k < list.size(); ++k) {
     const MuscleUnknown& u = model.unknowns()[list[k]];
     p.names.push_back(u.name);
-    p.low(signed_index(k)) = u.low;
-    p.high(signed_index(k)) = u.high;
+    p.low(k) = u.low;
+    p.high(k) = u.high;
   }
   for (std::size_t s = 0; s < model.segments(); ++s)
     p.constraint_names.push_back(fmt::format("{} NRMSE - tolerance", model.segment_name(s)));

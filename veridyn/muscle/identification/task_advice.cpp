@@ -27,7 +27,7 @@ class Foretelling {
   Foretelling(const MuscleParametricModel& model, const TaskEstimate& estimate, bool free_starts)
       : model_(model), estimate_(estimate) {
     for (Eigen::Index i = 0; i < signed_index(model.parameters().size()); ++i)
-      if (!model.parameters()[at(i)].fixed) free_.push_back(i);
+      if (!model.parameters()[i].fixed) free_.push_back(i);
     P_ = estimate.best.covariance_white(free_, free_);
     // Where the noise is estimated, intervals are widened by the freedom that the fit took: so is the noise to come.
     const auto values = static_cast<double>(estimate.best.values);
@@ -55,21 +55,21 @@ class Foretelling {
   [[nodiscard]] std::vector<bool> identified(const Eigen::VectorXd& variance) const {
     std::vector<bool> is;
     for (Eigen::Index k = 0; k < variance.size(); ++k) {
-      const double prior = model_.parameters()[at(free_[at(k)])].prior_sigma;
+      const double prior = model_.parameters()[free_[k]].prior_sigma;
       is.push_back(variance(k) <= (1.0 - kIdentifiedShare) * prior * prior);
     }
     return is;
   }
 
-  [[nodiscard]] const std::string& name(std::size_t k) const { return estimate_.best.parameters[at(free_[k])].name; }
+  [[nodiscard]] const std::string& name(std::size_t k) const { return estimate_.best.parameters[free_[k]].name; }
 
   /// Of the parameters that count. Intervals shrink as the inverse information does.
   [[nodiscard]] WidestInterval widest(const Eigen::VectorXd& then, const std::vector<bool>& counts) const {
     WidestInterval widest;
     for (Eigen::Index k = 0; k < P_.rows(); ++k) {
-      const std::size_t i = at(free_[at(k)]);
+      const std::size_t i = at(free_[k]);
       const estimation::Parameter& p = estimate_.best.parameters[i];
-      if (estimate_.verdicts[i] == TaskVerdict::kAtBound || !counts[at(k)]) continue;
+      if (estimate_.verdicts[i] == TaskVerdict::kAtBound || !counts[k]) continue;
       const double half = 0.5 * (p.high95 - p.low95) * std::sqrt(std::max(0.0, then(k)) / P_(k, k)) *
                           std::sqrt(estimate_.chi_square > 1.0 ? estimate_.chi_square : 1.0);
       const estimation::ModelParameter& own = model_.parameters()[i];
@@ -86,7 +86,7 @@ class Foretelling {
     if (estimate_.noise_correlation.size() == 0) return estimation::information_root(candidate, options_);
     std::vector<RowMatrix> complete;
     for (std::size_t s = 0; s < candidate.segments(); ++s)
-      complete.emplace_back(RowMatrix::Zero(candidate.samples(s), signed_index(candidate.outputs().size())));
+      complete.emplace_back(RowMatrix::Zero(candidate.samples(s), candidate.outputs().size()));
     return estimation::information_root(
         estimation::CorrelatedNoiseModel(candidate, complete, estimate_.noise_correlation), options_);
   }
@@ -99,8 +99,8 @@ class Foretelling {
 };
 
 Eigen::VectorXd standard_values(const MuscleParametricModel& model) {
-  Eigen::VectorXd theta(signed_index(model.parameters().size()));
-  for (Eigen::Index i = 0; i < theta.size(); ++i) theta(i) = model.parameters()[at(i)].start;
+  Eigen::VectorXd theta(model.parameters().size());
+  for (Eigen::Index i = 0; i < theta.size(); ++i) theta(i) = model.parameters()[i].start;
   return theta;
 }
 

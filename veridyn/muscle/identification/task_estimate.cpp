@@ -104,12 +104,12 @@ class TaskEstimation {
   }
 
   [[nodiscard]] Eigen::VectorXd scale() const {
-    return noise_.size() > 0 ? noise_ : Eigen::VectorXd::Constant(signed_index(model_.outputs().size()), 1.0);
+    return noise_.size() > 0 ? noise_ : Eigen::VectorXd::Constant(model_.outputs().size(), 1.0);
   }
 
   [[nodiscard]] Eigen::VectorXd standard_values() const {
-    Eigen::VectorXd start(signed_index(model_.parameters().size()));
-    for (Eigen::Index i = 0; i < start.size(); ++i) start(i) = model_.parameters()[at(i)].start;
+    Eigen::VectorXd start(model_.parameters().size());
+    for (Eigen::Index i = 0; i < start.size(); ++i) start(i) = model_.parameters()[i].start;
     return start;
   }
 
@@ -123,7 +123,7 @@ class TaskEstimation {
     for (Eigen::Index k = from; k < sobol.rows() && !progress_.interrupted(); ++k) {
       Eigen::VectorXd theta = start;
       for (Eigen::Index i = 0; i < start.size(); ++i) {
-        const estimation::ModelParameter& p = model_.parameters()[at(i)];
+        const estimation::ModelParameter& p = model_.parameters()[i];
         if (!p.fixed) theta(i) = p.low + sobol(k, i) * (p.high - p.low);
       }
       const double fit = residual(theta);
@@ -179,8 +179,7 @@ class TaskEstimation {
     double sum = e.negative_log_likelihood;
     for (std::size_t i = 0; i < model_.parameters().size(); ++i) {
       const estimation::ModelParameter& p = model_.parameters()[i];
-      if (!p.fixed && std::isfinite(p.prior_sigma))
-        sum += 0.5 * std::pow((e.theta(signed_index(i)) - p.start) / p.prior_sigma, 2);
+      if (!p.fixed && std::isfinite(p.prior_sigma)) sum += 0.5 * std::pow((e.theta(i) - p.start) / p.prior_sigma, 2);
     }
     return sum;
   }
@@ -312,8 +311,7 @@ class TaskEstimation {
   [[nodiscard]] bool same_place(const OutputErrorEstimate& e) const {
     for (std::size_t i = 0; i < model_.parameters().size(); ++i) {
       const double sigma = result_.best.parameters[i].sigma;
-      if (std::abs(e.theta(signed_index(i)) - result_.best.theta(signed_index(i))) > std::max(sigma, 1e-12))
-        return false;
+      if (std::abs(e.theta(i) - result_.best.theta(i)) > std::max(sigma, 1e-12)) return false;
     }
     return true;
   }
@@ -353,17 +351,16 @@ class TaskEstimation {
   void describe() {
     OutputErrorEstimate& e = result_.best;
     const std::size_t n = model_.parameters().size();
-    result_.learned = Eigen::VectorXd::Zero(signed_index(n));
+    result_.learned = Eigen::VectorXd::Zero(n);
     double squares = 0.0, count = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
       const estimation::ModelParameter& p = model_.parameters()[i];
       if (p.fixed) continue;
       if (p.start != 0.0) {
-        squares += std::pow(e.theta(signed_index(i)) / p.start - 1.0, 2);
+        squares += std::pow(e.theta(i) / p.start - 1.0, 2);
         count += 1.0;
       }
-      result_.learned(signed_index(i)) =
-          std::clamp(1.0 - std::pow(e.parameters[i].sigma_white / p.prior_sigma, 2), 0.0, 1.0);
+      result_.learned(i) = std::clamp(1.0 - std::pow(e.parameters[i].sigma_white / p.prior_sigma, 2), 0.0, 1.0);
     }
     result_.distance = count > 0.0 ? std::sqrt(squares / count) : 0.0;
     const double left = residual_statistics();
@@ -389,10 +386,10 @@ class TaskEstimation {
   [[nodiscard]] TaskVerdict verdict_of(std::size_t i) const {
     const estimation::Parameter& p = result_.best.parameters[i];
     if (p.status == ParameterStatus::kAtBound) return TaskVerdict::kAtBound;
-    const double learned = result_.learned(signed_index(i));
+    const double learned = result_.learned(i);
     // What explains the motion as well with a value outside the interval does not leave the interval known.
     for (const Eigen::VectorXd& rival : rivals_) {
-      const double other = rival(signed_index(i));
+      const double other = rival(i);
       if (learned >= kWeakShareOfPrior && !(other >= p.low95 && other <= p.high95))
         return TaskVerdict::kNotIdentifiable;
     }

@@ -22,7 +22,7 @@ std::vector<std::string> task_warnings(const MuscleParametricModel& model, const
     all.head(theta.size()) = theta;
     for (std::size_t i = 0; i < initial.size(); ++i) all(theta.size() + signed_index(i)) = initial[i].start;
     estimation::ModelResponse response;
-    response.output.resize(model.samples(s), signed_index(outputs.size()));
+    response.output.resize(model.samples(s), outputs.size());
     if (!internal::simulate_values({&system, &segment, model.unknowns(), outputs, model.accuracy()}, all, response)) {
       warnings.push_back(fmt::format("{}: the simulation cannot finish", model.segment_name(s)));
       continue;

@@ -101,7 +101,7 @@ ExternalLoad make_load(const ExternalLoadSource& source, const SignalTable* tabl
       const Eigen::Vector3d p(point[0][i], point[1][i], point[2][i]), f(force[0][i], force[1][i], force[2][i]);
       const Eigen::Vector3d turned = p.cross(f);
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        moment[axis][i] += turned(signed_index(axis));
+        moment[axis][i] += turned(axis);
         point[axis][i] = 0.0;
       }
     }

@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/core/nearest.hpp"
 
 namespace veridyn::muscle {
@@ -75,8 +74,8 @@ std::string Model::no_muscle(std::string_view wanted) const {
 }
 
 Eigen::VectorXd Model::default_pose() const {
-  Eigen::VectorXd q(signed_index(coordinates.size()));
-  for (std::size_t i = 0; i < coordinates.size(); ++i) q(static_cast<Eigen::Index>(i)) = coordinates[i].default_value;
+  Eigen::VectorXd q(coordinates.size());
+  for (std::size_t i = 0; i < coordinates.size(); ++i) q(i) = coordinates[i].default_value;
   for (const CoordinateCoupler& c : couplers) q(c.dependent) = c.function.evaluate(q(c.independent)).value;
   return q;
 }
@@ -90,7 +89,7 @@ void add_load(Model& model, std::string_view body_name, double mass, const Eigen
                      fmt::format("model '{}' has no body '{}'{}", model.name, body_name, suggestion(body_name, names)));
   }
   if (!(mass >= 0.0)) throw InputError("load", fmt::format("mass = {} kg on '{}' must be >= 0", mass, body_name));
-  Body& body = model.bodies[at(index)];
+  Body& body = model.bodies[index];
   const double total = body.mass + mass;
   if (total <= 0.0) return;
   const Eigen::Vector3d center = (body.mass * body.mass_center + mass * location) / total;

@@ -9,7 +9,6 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/io/opensim/storage.hpp"
 #include "veridyn/io/read.hpp"
@@ -106,8 +105,8 @@ void check_finite(const SignalTable& table, std::size_t column) {
   const std::vector<double>& v = table.values[column];
   const auto bad = std::find_if(v.begin(), v.end(), [](double x) { return !std::isfinite(x); });
   if (bad == v.end()) return;
-  throw InputError(table.source, fmt::format("column '{}' has no value at {} s", table.names[column],
-                                             table.time[at(bad - v.begin())]));
+  throw InputError(table.source,
+                   fmt::format("column '{}' has no value at {} s", table.names[column], table.time[bad - v.begin()]));
 }
 
 Motion make_motion(const SignalTable& table, const Model& model, const MotionOptions& options) {
@@ -125,7 +124,7 @@ Motion make_motion(const SignalTable& table, const Model& model, const MotionOpt
       continue;
     }
     check_finite(table, static_cast<std::size_t>(column));
-    std::vector<double> value = table.values[at(column)];
+    std::vector<double> value = table.values[column];
     if (table.rotations_in_degrees && coordinate.motion == CoordinateMotion::kRotational) {
       for (double& v : value) v *= kDegree;
     }
@@ -184,7 +183,7 @@ ControlSignals make_excitations(const SignalTable& table, const Model& model, st
       check_finite(table, static_cast<std::size_t>(column));
     }
     for (std::size_t i = 0; i < table.time.size(); ++i) {
-      const double value = column < 0 ? otherwise[m] : table.values[at(column)][i];
+      const double value = column < 0 ? otherwise[m] : table.values[column][i];
       // Solvers leave a trace of rounding at their bounds.
       constexpr double kRounding = 1e-6;
       if (value < -kRounding || value > 1.0 + kRounding) {

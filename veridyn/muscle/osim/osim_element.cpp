@@ -14,7 +14,7 @@ namespace {
 
 std::size_t line_of(std::string_view text, std::ptrdiff_t offset) {
   const auto end = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(offset, 0, std::ssize(text)));
-  return 1 + static_cast<std::size_t>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n'));
+  return 1 + static_cast<std::size_t>(std::count(text.begin(), text.begin() + end, '\n'));
 }
 
 std::vector<std::string> split(std::string_view text) {

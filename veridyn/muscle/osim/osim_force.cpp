@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/osim/osim_context.hpp"
 #include "veridyn/muscle/osim/osim_function.hpp"
 
@@ -16,7 +15,7 @@ void read_limit_force(Context& context, const Element& e) {
   f.name = e.name();
   f.coordinate = context.coordinate(e, "coordinate", e.text_or("coordinate", ""));
   // The file is per degree for a rotational coordinate.
-  const bool rotational = context.model.coordinates[at(f.coordinate)].motion == CoordinateMotion::kRotational;
+  const bool rotational = context.model.coordinates[f.coordinate].motion == CoordinateMotion::kRotational;
   const double unit = rotational ? kDegree : 1.0;
   f.upper_stiffness = e.not_negative_or("upper_stiffness", 1.0) / unit;
   f.upper_limit = e.number_or("upper_limit", 0.0) * unit;

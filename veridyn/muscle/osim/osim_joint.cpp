@@ -80,7 +80,7 @@ void read_plain_axes(Context& context, const Element& element, const std::vector
     TransformAxis& axis = axis_of(joint, static_cast<std::size_t>(axes[i]));
     axis.coordinate = joint.coordinates[i];
     axis.function = numerics::PiecewisePolynomial::linear(1.0, 0.0);
-    context.model.coordinates[static_cast<std::size_t>(axis.coordinate)].motion =
+    context.model.coordinates[axis.coordinate].motion =
         axes[i] < 3 ? CoordinateMotion::kRotational : CoordinateMotion::kTranslational;
   }
 }
@@ -98,7 +98,7 @@ void classify(Context& context, const Joint& joint) {
       motion = i < 3 ? CoordinateMotion::kRotational : CoordinateMotion::kTranslational;
       break;
     }
-    context.model.coordinates[static_cast<std::size_t>(index)].motion = motion;
+    context.model.coordinates[index].motion = motion;
   }
 }
 
@@ -185,8 +185,8 @@ void read_joints(Context& context) {
     joint.name = element.name();
     joint.type = element.type();
     for (int i = 0; i < 3; ++i) {
-      joint.rotation[static_cast<std::size_t>(i)].axis = Eigen::Vector3d::Unit(i);
-      joint.translation[static_cast<std::size_t>(i)].axis = Eigen::Vector3d::Unit(i);
+      joint.rotation[i].axis = Eigen::Vector3d::Unit(i);
+      joint.translation[i].axis = Eigen::Vector3d::Unit(i);
     }
     const auto plain = kPlainJoints.find(joint.type);
     if (plain == kPlainJoints.end() && joint.type != "CustomJoint") {
@@ -214,9 +214,8 @@ void read_joints(Context& context) {
     if (joint.child == joint.parent) element.fail("child", "a joint cannot connect a body to itself");
     for (const Joint& other : context.model.joints) {
       if (other.child == joint.child) {
-        element.fail("child",
-                     fmt::format("body '{}' already hangs on joint '{}'",
-                                 context.model.bodies[static_cast<std::size_t>(joint.child)].name, other.name));
+        element.fail("child", fmt::format("body '{}' already hangs on joint '{}'",
+                                          context.model.bodies[joint.child].name, other.name));
       }
     }
     read_coordinates(context, element, joint, plain == kPlainJoints.end() ? 0 : plain->second.size());
@@ -236,9 +235,8 @@ void read_joints(Context& context) {
       const Element root(context.document, context.document.model());
       const std::string& name = context.model.bodies[b].name;
       if (joint == context.model.joints.end()) {
-        root.fail("JointSet",
-                  fmt::format("no joint holds body '{}'{}", context.model.bodies[static_cast<std::size_t>(at)].name,
-                              at == static_cast<int>(b) ? "" : fmt::format(", on which '{}' hangs", name)));
+        root.fail("JointSet", fmt::format("no joint holds body '{}'{}", context.model.bodies[at].name,
+                                          at == static_cast<int>(b) ? "" : fmt::format(", on which '{}' hangs", name)));
       }
       if (hops > context.model.bodies.size()) {
         root.fail("JointSet", fmt::format("the joints from body '{}' towards the ground go round in a circle", name));

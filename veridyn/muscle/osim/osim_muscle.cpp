@@ -4,7 +4,6 @@
 #include <set>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/muscle/osim/osim_context.hpp"
 #include "veridyn/muscle/osim/osim_function.hpp"

@@ -55,8 +55,7 @@ std::string OsimFile::text_with(const Model& changed) const {
   for (const Muscle& muscle : changed.muscles) {
     const int index = model_.muscle(muscle.name());
     if (index < 0) throw InputError(document_->name(), fmt::format("has no muscle '{}' to write to", muscle.name()));
-    const MusculotendonParameters<double>& old =
-        model_.muscles[static_cast<std::size_t>(index)].parameters.musculotendon;
+    const MusculotendonParameters<double>& old = model_.muscles[index].parameters.musculotendon;
     const pugi::xml_node node = find_muscle(*document_, muscle.name());
     for (std::size_t i = 0; i < kMusculotendonFields.size(); ++i) {
       const double value = field_of(muscle.parameters.musculotendon, i);

@@ -24,8 +24,8 @@ int MusclePaths::segment(int a, int b) {
   for (std::size_t i = 0; i < segments_.size(); ++i)
     if (segments_[i].a == a && segments_[i].b == b) return static_cast<int>(i);
   Segment segment{a, b, {terms_.size(), terms_.size()}};
-  const Point& pa = points_[at(a)];
-  const Point& pb = points_[at(b)];
+  const Point& pa = points_[a];
+  const Point& pb = points_[b];
   for (int c = 0; c < coordinates_; ++c) {
     const int sign = static_cast<int>(moves(c, pb.link)) - static_cast<int>(moves(c, pa.link));
     if (sign != 0) terms_.push_back({c, sign, -1});
@@ -33,7 +33,7 @@ int MusclePaths::segment(int a, int b) {
   for (const auto& [at, sign] : {std::pair{&pa, -1}, std::pair{&pb, 1}}) {
     if (at->moving < 0) continue;
     for (int axis = 0; axis < 3; ++axis) {
-      const int c = moving_[static_cast<std::size_t>(at->moving)].coordinate[static_cast<std::size_t>(axis)];
+      const int c = moving_[at->moving].coordinate[axis];
       if (c >= 0) terms_.push_back({c, sign, 3 * at->moving + axis});
     }
   }
@@ -46,13 +46,13 @@ std::vector<int> MusclePaths::coordinates_of(const Path& path) const {
   std::vector<int> links;
   std::set<int> moving;
   for (const PathStation& station : path.stations) {
-    const Point& p = points_[at(station.point)];
+    const Point& p = points_[station.point];
     links.push_back(p.link);
     if (p.moving < 0) continue;
-    for (const int c : moving_[at(p.moving)].coordinate)
+    for (const int c : moving_[p.moving].coordinate)
       if (c >= 0) moving.insert(c);
   }
-  for (const Wrap& wrap : path.wraps) links.push_back(objects_[at(wrap.object)].link);
+  for (const Wrap& wrap : path.wraps) links.push_back(objects_[wrap.object].link);
   std::vector<int> found;
   for (int c = 0; c < coordinates_; ++c) {
     const auto count = std::count_if(links.begin(), links.end(), [&](int link) { return moves(c, link); });
@@ -65,7 +65,7 @@ MusclePaths::MusclePaths(const Model& model, const Mechanism& mechanism, WrapMod
     : mode_(mode), coordinates_(mechanism.coordinates()) {
   moves_.resize(static_cast<std::size_t>(mechanism.links()) * static_cast<std::size_t>(coordinates_));
   for (int link = 0; link < mechanism.links(); ++link)
-    for (int c = 0; c < coordinates_; ++c) moves_[at(link * coordinates_ + c)] = mechanism.moves(c, link) ? 1 : 0;
+    for (int c = 0; c < coordinates_; ++c) moves_[link * coordinates_ + c] = mechanism.moves(c, link) ? 1 : 0;
   for (const WrapObject& object : model.wrap_objects) add_object(model, mechanism, object);
   for (const Muscle& muscle : model.muscles) add_path(model, mechanism, muscle);
   for (int muscle = 0; muscle < muscles(); ++muscle) compile_path(muscle);
@@ -112,7 +112,7 @@ MusclePaths::PathStation MusclePaths::station(const Model& model, const Mechanis
     moving.location = p.moving_location;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (moving.coordinate[axis] < 0) continue;
-      const Coordinate& c = model.coordinates[at(moving.coordinate[axis])];
+      const Coordinate& c = model.coordinates[moving.coordinate[axis]];
       moving.low[axis] = c.low;
       moving.high[axis] = c.high;
     }
@@ -140,7 +140,7 @@ void MusclePaths::add_path(const Model& model, const Mechanism& mechanism, const
   for (const PathWrap& w : muscle.wraps) {
     if (w.object < 0 || w.object >= static_cast<int>(objects_.size()))
       throw InputError(model.name, fmt::format("muscle {}: it wraps over an object that is not there", path.name));
-    if (!objects_[at(w.object)].description.active) continue;
+    if (!objects_[w.object].description.active) continue;
     Wrap wrap;
     wrap.object = w.object;
     wrap.first = std::max(0, w.first_point);
@@ -165,9 +165,9 @@ bool MusclePaths::never_wraps(const Object& object, const Point& a, const Point&
 void MusclePaths::list_spans(Path& path) {
   for (Wrap& wrap : path.wraps) {
     for (int i = wrap.first; i < wrap.last; ++i) {
-      const int a = path.stations[at(i)].point;
-      const int b = path.stations[static_cast<std::size_t>(i) + 1].point;
-      if (never_wraps(objects_[at(wrap.object)], points_[at(a)], points_[at(b)])) {
+      const int a = path.stations[i].point;
+      const int b = path.stations[i + 1].point;
+      if (never_wraps(objects_[wrap.object], points_[a], points_[b])) {
         wrap.spans.push_back(-1);
         continue;
       }
@@ -186,7 +186,7 @@ void MusclePaths::part_wraps(Path& path) const {
   std::vector<Wrap> parts;
   for (const Wrap& wrap : path.wraps) {
     for (int i = wrap.first; i < wrap.last; ++i) {
-      const int span = wrap.spans[at(i - wrap.first)];
+      const int span = wrap.spans[i - wrap.first];
       if (span >= 0) parts.push_back({wrap.object, i, i + 1, wrap.method, wrap.alone, {span}});
     }
   }
@@ -194,7 +194,7 @@ void MusclePaths::part_wraps(Path& path) const {
 }
 
 void MusclePaths::compile_path(int muscle) {
-  Path& path = muscles_[at(muscle)];
+  Path& path = muscles_[muscle];
   const bool conditional =
       std::any_of(path.stations.begin(), path.stations.end(), [](const PathStation& s) { return s.condition >= 0; });
   const auto share = [&](std::size_t i, std::size_t j) {
@@ -211,8 +211,8 @@ void MusclePaths::compile_path(int muscle) {
     for (std::size_t j = 0; j < i; ++j)
       if (share(i, j)) path.coupled = true;
   for (std::size_t i = 0; i + 1 < path.stations.size(); ++i) {
-    const Point& pa = points_[at(path.stations[i].point)];
-    const Point& pb = points_[at(path.stations[i + 1].point)];
+    const Point& pa = points_[path.stations[i].point];
+    const Point& pb = points_[path.stations[i + 1].point];
     const bool fixed = pa.link == pb.link && pa.moving < 0 && pb.moving < 0;
     path.fixed.push_back(fixed ? (pb.location - pa.location).norm() : -1.0);
   }
@@ -225,7 +225,7 @@ void MusclePaths::compile_path(int muscle) {
 }
 
 void MusclePaths::compile_straight(int muscle) {
-  const Path& path = muscles_[at(muscle)];
+  const Path& path = muscles_[muscle];
   std::vector<Condition> conditions;
   std::vector<std::size_t> condition_of;
   for (const PathStation& s : path.stations) {
@@ -249,14 +249,14 @@ void MusclePaths::compile_straight(int muscle) {
       if (station.condition >= 0 && (held >> condition_of[i] & 1u) == 0) continue;
       const int b = station.point;
       if (a >= 0) {
-        const Point& pa = points_[at(a)];
-        const Point& pb = points_[at(b)];
+        const Point& pa = points_[a];
+        const Point& pb = points_[b];
         if (pa.link == pb.link && pa.moving < 0 && pb.moving < 0) {
           variant.constant += (pb.location - pa.location).norm();
         } else {
           const int s = segment(a, b);
           variant_segments_.push_back(s);
-          const Segment& compiled = segments_[at(s)];
+          const Segment& compiled = segments_[s];
           for (std::size_t t = compiled.terms[0]; t < compiled.terms[1]; ++t)
             for (std::size_t k = path.pairs[0]; k < path.pairs[1]; ++k)
               if (pairs_[k].coordinate == terms_[t].coordinate) variant_adds_.push_back({t, k});
@@ -273,8 +273,8 @@ void MusclePaths::compile_straight(int muscle) {
 
 void MusclePaths::sort_segments() {
   const auto links = [&](const Segment& s) {
-    const Point& a = points_[at(s.a)];
-    const Point& b = points_[at(s.b)];
+    const Point& a = points_[s.a];
+    const Point& b = points_[s.b];
     return std::tuple{a.moving >= 0 || b.moving >= 0, a.link, b.link};
   };
   std::vector<std::size_t> order(segments_.size()), place(segments_.size());
@@ -291,21 +291,20 @@ void MusclePaths::sort_segments() {
         link_pairs_.push_back({a, b, sorted.size(), sorted.size()});
       ++link_pairs_.back().end;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto k = static_cast<Eigen::Index>(axis);
-        end_a_[axis].push_back(points_[at(s.a)].location[k]);
-        end_b_[axis].push_back(points_[at(s.b)].location[k]);
+        end_a_[axis].push_back(points_[s.a].location[axis]);
+        end_b_[axis].push_back(points_[s.b].location[axis]);
       }
     }
     sorted.push_back(s);
   }
   segments_ = sorted;
-  for (int& s : variant_segments_) s = static_cast<int>(place[at(s)]);
+  for (int& s : variant_segments_) s = static_cast<int>(place[s]);
 }
 
 void MusclePaths::list_points() {
   std::set<int> for_lengths;
   for (const int m : general_)
-    for (const PathStation& s : muscles_[at(m)].stations) for_lengths.insert(s.point);
+    for (const PathStation& s : muscles_[m].stations) for_lengths.insert(s.point);
   std::set<int> for_all = for_lengths;
   const std::size_t together = link_pairs_.empty() ? 0 : link_pairs_.back().end;
   for (std::size_t i = 0; i < segments_.size(); ++i) {
@@ -316,7 +315,7 @@ void MusclePaths::list_points() {
   }
   // Points fixed to the ground stay where they are; moving ones are placed separately.
   const auto placed = [&](int p) {
-    const Point& point = points_[at(p)];
+    const Point& point = points_[p];
     return point.link != 0 && point.moving < 0;
   };
   std::copy_if(for_lengths.begin(), for_lengths.end(), std::back_inserter(points_for_lengths_), placed);

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/dynamics/mechanism.hpp"
 #include "veridyn/muscle/model/model.hpp"
 #include "veridyn/muscle/path/wrap_cylinder.hpp"
@@ -55,11 +54,11 @@ class MusclePaths {
   [[nodiscard]] int coordinates() const { return coordinates_; }
   [[nodiscard]] WrapMode mode() const { return mode_; }
   /// Whether a muscle has wrap objects that are active.
-  [[nodiscard]] bool can_wrap(int muscle) const { return !muscles_[at(muscle)].wraps.empty(); }
+  [[nodiscard]] bool can_wrap(int muscle) const { return !muscles_[muscle].wraps.empty(); }
   /// All pairs, muscle after muscle: the order of `PathWorkspace::gradient`.
   [[nodiscard]] std::span<const Pair> pairs() const { return pairs_; }
-  [[nodiscard]] std::size_t first_pair(int muscle) const { return muscles_[at(muscle)].pairs[0]; }
-  [[nodiscard]] std::size_t end_pair(int muscle) const { return muscles_[at(muscle)].pairs[1]; }
+  [[nodiscard]] std::size_t first_pair(int muscle) const { return muscles_[muscle].pairs[0]; }
+  [[nodiscard]] std::size_t end_pair(int muscle) const { return muscles_[muscle].pairs[1]; }
 
   /// Lengths [m] at the pose q whose `update_positions` filled `kinematics`.
   template <typename Scalar>

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/path/path_solver.hpp"
 
 namespace veridyn::muscle {
@@ -34,7 +33,7 @@ std::vector<Eigen::Vector3d> MusclePaths::polyline(const Kinematics<double>& kin
   PathWorkspace<double> workspace(*this);
   PathSolver<double> solver(*this, kinematics, q, workspace, PathPlaces::kEvery);
   const std::size_t n = solver.nodes_of(muscle);
-  const Path& path = muscles_[at(muscle)];
+  const Path& path = muscles_[muscle];
   std::vector<Eigen::Vector3d> line;
   for (std::size_t k = 0; k < n; ++k) {
     const auto& node = workspace.nodes[k];
@@ -42,9 +41,9 @@ std::vector<Eigen::Vector3d> MusclePaths::polyline(const Kinematics<double>& kin
     if (node.wrap < 0 || k + 1 == n || workspace.nodes[k + 1].wrap != node.wrap) continue;
     // Between the tangent points: a Bezier arc with the right ends and directions, laid onto the surface.
     const WrapResult<double>& r = solver.result(static_cast<std::size_t>(node.wrap));
-    const int index = path.wraps[at(node.wrap)].object;
-    const auto& frame = workspace.object[at(index)];
-    const Object& object = objects_[at(index)];
+    const int index = path.wraps[node.wrap].object;
+    const auto& frame = workspace.object[index];
+    const Object& object = objects_[index];
     const Eigen::Vector3d d1 = (r.r1 - workspace.nodes[k - 1].x).normalized() * r.surface_length / 3.0;
     const Eigen::Vector3d d2 = (workspace.nodes[k + 2].x - r.r2).normalized() * r.surface_length / 3.0;
     for (int i = 1; i <= arc_points; ++i) {
@@ -65,12 +64,11 @@ std::vector<std::string> MusclePaths::touched(const Kinematics<double>& kinemati
   PathWorkspace<double> workspace(*this);
   PathSolver<double> solver(*this, kinematics, q, workspace, PathPlaces::kEvery);
   const std::size_t n = solver.nodes_of(muscle);
-  const Path& path = muscles_[at(muscle)];
+  const Path& path = muscles_[muscle];
   std::vector<std::string> names;
   for (std::size_t k = 0; k + 1 < n; ++k) {
     const int wrap = workspace.nodes[k].wrap;
-    if (wrap >= 0 && workspace.nodes[k + 1].wrap == wrap)
-      names.push_back(objects_[at(path.wraps[at(wrap)].object)].name);
+    if (wrap >= 0 && workspace.nodes[k + 1].wrap == wrap) names.push_back(objects_[path.wraps[wrap].object].name);
   }
   return names;
 }
@@ -81,14 +79,13 @@ std::vector<MusclePaths::PointInside> MusclePaths::points_inside(const Kinematic
   const PathSolver<double> solver(*this, kinematics, q, workspace, PathPlaces::kEvery);
   std::vector<PointInside> found;
   for (int muscle = 0; muscle < muscles(); ++muscle) {
-    const Path& path = muscles_[at(muscle)];
+    const Path& path = muscles_[muscle];
     for (const Wrap& wrap : path.wraps) {
-      const Object& object = objects_[at(wrap.object)];
-      const auto& frame = workspace.object[at(wrap.object)];
+      const Object& object = objects_[wrap.object];
+      const auto& frame = workspace.object[wrap.object];
       for (int i = wrap.first; i <= wrap.last; ++i) {
-        const PathStation& station = path.stations[at(i)];
-        const Eigen::Vector3d local =
-            frame.rotation.transpose() * (workspace.position[at(station.point)] - frame.position);
+        const PathStation& station = path.stations[i];
+        const Eigen::Vector3d local = frame.rotation.transpose() * (workspace.position[station.point] - frame.position);
         const double below = depth(local, object.description);
         const auto same = [&](const PointInside& other) {
           return other.muscle == muscle && other.point == station.name && other.object == object.name;

@@ -37,10 +37,10 @@ std::vector<std::array<unsigned char, 8>> exponents(int n, int degree) {
       return;
     }
     for (int i = 0; i <= left; ++i) {
-      power[at(axis)] = static_cast<unsigned char>(i);
+      power[axis] = static_cast<unsigned char>(i);
       self(self, axis - 1, left - i);
     }
-    power[at(axis)] = 0;
+    power[axis] = 0;
   };
   fill(fill, n - 1, degree);
   return found;
@@ -130,10 +130,10 @@ FittedPaths::Builder::Builder(const Model& model, const Mechanism& mechanism, co
       high_(low_.size()),
       axis_of_(low_.size(), -1) {
   for (int c = 0; c < exact.coordinates(); ++c) {
-    const Coordinate& k = model.coordinates[at(c)];
+    const Coordinate& k = model.coordinates[c];
     const bool range = k.high > k.low && k.high - k.low < 20.0;
-    low_[at(c)] = range ? k.low : rest_[c] - 0.5;
-    high_[at(c)] = range ? k.high : rest_[c] + 0.5;
+    low_[c] = range ? k.low : rest_[c] - 0.5;
+    high_[c] = range ? k.high : rest_[c] + 0.5;
   }
 }
 
@@ -166,13 +166,12 @@ Eigen::VectorXd FittedPaths::Builder::pose(const std::vector<int>& of, int index
 }
 
 int FittedPaths::Builder::axis(int coordinate) {
-  const auto c = static_cast<std::size_t>(coordinate);
-  if (axis_of_[c] < 0) {
-    axis_of_[c] = static_cast<int>(result_.axes_.size());
-    const double a = low_[c], b = high_[c];
+  if (axis_of_[coordinate] < 0) {
+    axis_of_[coordinate] = static_cast<int>(result_.axes_.size());
+    const double a = low_[coordinate], b = high_[coordinate];
     result_.axes_.push_back({coordinate, 0.5 * (a + b), 2.0 / (b - a)});
   }
-  return axis_of_[c];
+  return axis_of_[coordinate];
 }
 
 /// A single exact path needs all that exact paths need (kinematics, points): where all straight ones are cheap to fit,
@@ -185,7 +184,7 @@ void FittedPaths::Builder::choose_muscles() {
   for (int m = 0; m < exact_.muscles(); ++m) {
     result_.fitted_.push_back(options_.mixed && !all_cheap && !exact_.can_wrap(m) ? 0 : 1);
     PathFitError error;
-    error.muscle = model_.muscles[at(m)].name();
+    error.muscle = model_.muscles[m].name();
     error.fitted = result_.fitted_.back() != 0;
     result_.errors_.push_back(error);
     result_.constant_.push_back(0.0);
@@ -281,12 +280,12 @@ FittedPaths::Builder::Samples FittedPaths::Builder::sample(const Part& part, con
       // Of the fit denser towards the ends, as Chebyshev's points; of the check evenly spread.
       const double u = halton(i + (i < fit_poses ? 0 : 5000), a);
       s.x(i, a) = i < fit_poses ? -std::cos(kPi * u) : 2.0 * u - 1.0;
-      const Axis& scaled = result_.axes_[at(part.axes[a])];
+      const Axis& scaled = result_.axes_[part.axes[a]];
       q[scaled.coordinate] = scaled.middle + s.x(i, a) / scaled.scale;
     }
     evaluate_exact(q);
-    s.value[i] = workspace_.length[at(part.muscle)] - at_rest;
-    for (int a = 0; a < n; ++a) s.slope(i, a) = exact_slope(part.muscle, of[at(a)]);
+    s.value[i] = workspace_.length[part.muscle] - at_rest;
+    for (int a = 0; a < n; ++a) s.slope(i, a) = exact_slope(part.muscle, of[a]);
   }
   return s;
 }
@@ -299,13 +298,13 @@ double FittedPaths::Builder::fit_powers(const Part& part, const Samples& s, cons
   Eigen::VectorXd values((n + 1) * s.all);
   for (Eigen::Index i = 0; i < s.all; ++i) {
     for (Eigen::Index t = 0; t < terms; ++t) {
-      const auto& p = powers[at(t)];
+      const auto& p = powers[t];
       double product = 1.0;
-      for (int a = 0; a < n; ++a) product *= power_of(s.x(i, a), p[at(a)]);
+      for (int a = 0; a < n; ++a) product *= power_of(s.x(i, a), p[a]);
       rows(i * (n + 1), t) = product;
       for (int a = 0; a < n; ++a) {
-        double d = p[at(a)] * result_.axes_[at(part.axes[a])].scale;
-        for (int b = 0; b < n && d != 0.0; ++b) d *= power_of(s.x(i, b), p[at(b)] - (a == b ? 1 : 0));
+        double d = p[a] * result_.axes_[part.axes[a]].scale;
+        for (int b = 0; b < n && d != 0.0; ++b) d *= power_of(s.x(i, b), p[b] - (a == b ? 1 : 0));
         rows(i * (n + 1) + 1 + a, t) = d;
       }
     }
@@ -343,13 +342,13 @@ void FittedPaths::Builder::fit_part(Part& part, const std::vector<int>& of, doub
 void FittedPaths::Builder::store_pieces(Part& part, int coordinate, double at_rest) {
   part.degree = -1;
   part.first = result_.pieces_.size();
-  const Axis scaled = result_.axes_[at(part.axes[0])];
+  const Axis scaled = result_.axes_[part.axes[0]];
   std::vector<double> l, d;
   for (int i = 0; i <= options_.panels; ++i) {
     Eigen::VectorXd q = rest_;
     q[scaled.coordinate] = scaled.middle + (2.0 * i / options_.panels - 1.0) / scaled.scale;
     evaluate_exact(q);
-    l.push_back(workspace_.length[at(part.muscle)] - at_rest);
+    l.push_back(workspace_.length[part.muscle] - at_rest);
     d.push_back(exact_slope(part.muscle, coordinate) * 2.0 / (options_.panels * scaled.scale));
   }
   for (std::size_t i = 0; i + 1 < l.size(); ++i) {
@@ -373,7 +372,7 @@ void FittedPaths::Builder::store(Part& part, const Polynomial& polynomial) {
   for (Eigen::Index t = 0; t < c.size(); ++t) {
     Term term;
     term.factor = c[t];
-    std::copy_n(polynomial.powers[at(t)].begin(), kMostCoordinates, term.power);
+    std::copy_n(polynomial.powers[t].begin(), kMostCoordinates, term.power);
     result_.terms_.push_back(term);
   }
   part.end = result_.terms_.size();
@@ -418,18 +417,18 @@ void FittedPaths::Builder::drop_misfits() {
 }
 
 void FittedPaths::Builder::keep_exact() {
-  std::erase_if(result_.parts_, [&](const Part& part) { return result_.fitted_[at(part.muscle)] == 0; });
+  std::erase_if(result_.parts_, [&](const Part& part) { return result_.fitted_[part.muscle] == 0; });
   std::vector<MusclePaths::Pair> pairs;
   std::vector<std::size_t> place(result_.pairs_.size());
   std::size_t k = 0;
   for (int m = 0; m < result_.muscles(); ++m) {
-    const bool is_fitted = result_.fitted_[at(m)] != 0;
+    const bool is_fitted = result_.fitted_[m] != 0;
     for (; k < result_.pairs_.size() && result_.pairs_[k].muscle == m; ++k) {
       place[k] = pairs.size();
       if (is_fitted) pairs.push_back(result_.pairs_[k]);
     }
     if (is_fitted) continue;
-    result_.constant_[at(m)] = 0.0;
+    result_.constant_[m] = 0.0;
     result_.exact_.push_back(m);
     for (std::size_t from = exact_.first_pair(m); from < exact_.end_pair(m); ++from) {
       result_.exact_pairs_.push_back({from, pairs.size()});
@@ -442,10 +441,10 @@ void FittedPaths::Builder::keep_exact() {
   for (Part& part : result_.parts_) {
     for (int a = 0; a < part.coordinates; ++a) {
       part.pair[a] = place[part.pair[a]];
-      int& now = axis_place[at(part.axes[a])];
+      int& now = axis_place[part.axes[a]];
       if (now < 0) {
         now = static_cast<int>(axes.size());
-        axes.push_back(result_.axes_[at(part.axes[a])]);
+        axes.push_back(result_.axes_[part.axes[a]]);
       }
       part.axes[a] = now;
     }

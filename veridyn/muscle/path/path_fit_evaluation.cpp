@@ -13,7 +13,7 @@ bool FittedPaths::evaluate(const MusclePaths& exact, const Kinematics<Scalar>& k
   const bool inside = evaluate(q, length, gradient);
   if (exact_.empty()) return inside;
   exact.evaluate(kinematics, q, workspace, std::span<const std::uint8_t>(fitted_));
-  for (const int m : exact_) length[m] = workspace.length[static_cast<std::size_t>(m)];
+  for (const int m : exact_) length[m] = workspace.length[m];
   for (const auto& [from, to] : exact_pairs_) gradient[to] = workspace.gradient[from];
   return inside;
 }
@@ -43,7 +43,7 @@ bool FittedPaths::evaluate(const Scalar* q, Scalar* length, Scalar* gradient) co
 /// A chain of cubics in one coordinate, straight beyond its range.
 template <typename Scalar>
 inline void FittedPaths::add_pieces(const Part& part, const Scalar* q, Scalar& length, Scalar* gradient) const {
-  const Axis& axis = axes_[static_cast<std::size_t>(part.axes[0])];
+  const Axis& axis = axes_[part.axes[0]];
   const Scalar x = along(axis, q);
   const auto n = (part.end - part.first) / 4;
   const double at = (value_of(x) + 1.0) * 0.5 * static_cast<double>(n);
@@ -68,8 +68,8 @@ template <typename Scalar>
 inline void FittedPaths::add_rows(const Part& part, const Scalar* q, Scalar& length, Scalar* gradient) const {
   const bool two = part.coordinates == 2;
   const int degree = part.degree;
-  const Axis& first_axis = axes_[static_cast<std::size_t>(part.axes[0])];
-  const Axis& second_axis = axes_[static_cast<std::size_t>(part.axes[two ? 1 : 0])];
+  const Axis& first_axis = axes_[part.axes[0]];
+  const Axis& second_axis = axes_[part.axes[two ? 1 : 0]];
   const Scalar x = along(first_axis, q);
   const Scalar y = two ? along(second_axis, q) : Scalar(0.0);
   Scalar value(0.0), by_x(0.0), by_y(0.0);
@@ -96,7 +96,7 @@ template <typename Scalar>
 inline void FittedPaths::add_terms(const Part& part, const Scalar* q, Scalar& length, Scalar* gradient) const {
   Scalar power[kMostCoordinates][kMostDegree + 1];
   for (int a = 0; a < part.coordinates; ++a) {
-    const Scalar u = along(axes_[static_cast<std::size_t>(part.axes[a])], q);
+    const Scalar u = along(axes_[part.axes[a]], q);
     power[a][0] = Scalar(1.0);
     for (int i = 1; i <= part.degree; ++i) power[a][i] = power[a][i - 1] * u;
   }
@@ -118,8 +118,7 @@ inline void FittedPaths::add_terms(const Part& part, const Scalar* q, Scalar& le
     }
   }
   length += value;
-  for (int a = 0; a < part.coordinates; ++a)
-    gradient[part.pair[a]] += slope[a] * Scalar(axes_[static_cast<std::size_t>(part.axes[a])].scale);
+  for (int a = 0; a < part.coordinates; ++a) gradient[part.pair[a]] += slope[a] * Scalar(axes_[part.axes[a]].scale);
 }
 
 template bool FittedPaths::evaluate(const double*, double*, double*) const;

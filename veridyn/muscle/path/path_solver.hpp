@@ -92,7 +92,7 @@ class PathSolver {
   /// Length of the nodes, and its gradient times `factor`.
   template <bool kGradient>
   Scalar measure(const Path& path, std::size_t n, const Scalar& factor);
-  bool is_moving(int point) const { return paths_.points_[static_cast<std::size_t>(point)].moving >= 0; }
+  bool is_moving(int point) const { return paths_.points_[point].moving >= 0; }
   /// A covector g along a line through x that grows with the motion of `to` and against that of `from`.
   void add_string(const Path& path, const Scalar& factor, const Vector& x, const Vector& g, int from, int to);
   void add_moving(const Path& path, const Scalar& factor, int point, const Vector& g);

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/path/path_solver.hpp"
 
 /// Length and gradient of a path whose nodes are known, and the blending of wraps that fade.
@@ -29,7 +28,7 @@ inline void PathSolver<Scalar>::pull(int muscle, const Scalar& tension, SpatialV
   by_link_ = by_link;
   tension_ = tension;
   PathFlag flag = PathFlag::kFine;
-  general<true>(paths_.muscles_[static_cast<std::size_t>(muscle)], flag);
+  general<true>(paths_.muscles_[muscle], flag);
   by_link_ = nullptr;
 }
 
@@ -41,15 +40,15 @@ inline Scalar PathSolver<Scalar>::blended(const Path& path, unsigned mask, const
     if ((done_ >> i & 1u) != 0) continue;
     done_ |= 1u << i;
     const MusclePaths::Wrap& wrap = path.wraps[i];
-    const Node a = w_.stations[at(w_.first_segment[i])];
-    const Node b = w_.stations[static_cast<std::size_t>(w_.first_segment[i]) + 1];
+    const Node a = w_.stations[w_.first_segment[i]];
+    const Node b = w_.stations[w_.first_segment[i] + 1];
     const Scalar weight = w_.first[i]->weight;
     const Vector slope_a = w_.first[i]->weight_p, slope_b = w_.first[i]->weight_q;
     const Scalar with = blended<kGradient>(path, mask, Scalar(factor * weight));
     const Scalar without = blended<kGradient>(path, mask & ~(1u << i), Scalar(factor * (Scalar(1.0) - weight)));
     if constexpr (kGradient) {
       const Scalar change = factor * (with - without);
-      const int link = paths_.objects_[at(wrap.object)].link;
+      const int link = paths_.objects_[wrap.object].link;
       add_string(path, change, a.x, slope_a, link, a.link);
       add_string(path, change, b.x, slope_b, link, b.link);
       add_moving(path, change, a.point, slope_a);
@@ -70,7 +69,7 @@ inline Scalar PathSolver<Scalar>::measure(const Path& path, std::size_t n, const
     const Node& a = w_.nodes[k];
     const Node& b = w_.nodes[k + 1];
     if (a.wrap >= 0 && a.wrap == b.wrap) {
-      const WrapResult<Scalar>& r = *w_.result[at(a.wrap)];
+      const WrapResult<Scalar>& r = *w_.result[a.wrap];
       length += r.surface_length;
       if constexpr (kGradient) {
         if (r.depth > 0.0 && paths_.mode_ == WrapMode::kTaut) {
@@ -88,7 +87,7 @@ inline Scalar PathSolver<Scalar>::measure(const Path& path, std::size_t n, const
       continue;
     }
     if (a.station >= 0 && b.station == a.station + 1) {
-      const double fixed = path.fixed[at(a.station)];
+      const double fixed = path.fixed[a.station];
       if (fixed >= 0.0) {
         length += fixed;
         continue;
@@ -126,7 +125,7 @@ inline void PathSolver<Scalar>::add_string(const Path& path, const Scalar& facto
     const int c = paths_.pairs_[k].coordinate;
     const int sign = static_cast<int>(paths_.moves(c, to)) - static_cast<int>(paths_.moves(c, from));
     if (sign == 0) continue;
-    const SpatialVector<Scalar>& column = kinematics_.columns[at(c)];
+    const SpatialVector<Scalar>& column = kinematics_.columns[c];
     const Scalar along = factor * (column.angular.dot(m) + column.linear.dot(g));
     w_.gradient[k] += sign > 0 ? along : Scalar(-along);
   }
@@ -134,9 +133,9 @@ inline void PathSolver<Scalar>::add_string(const Path& path, const Scalar& facto
 
 template <typename Scalar>
 inline void PathSolver<Scalar>::add_moving(const Path& path, const Scalar& factor, int point, const Vector& g) {
-  const int index = paths_.points_[at(point)].moving;
+  const int index = paths_.points_[point].moving;
   if (index < 0) return;
-  const MusclePaths::MovingPoint& moving = paths_.moving_[at(index)];
+  const MusclePaths::MovingPoint& moving = paths_.moving_[index];
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (moving.coordinate[axis] < 0) continue;
     for (std::size_t k = path.pairs[0]; k < path.pairs[1]; ++k) {

@@ -58,7 +58,7 @@ inline std::size_t PathSolver<Scalar>::solve_as_opensim(const Path& path, std::s
 template <typename Scalar>
 inline WrapStatus PathSolver<Scalar>::inside_somewhere(const Path& path, std::size_t i, std::size_t n) {
   const MusclePaths::Wrap& wrap = path.wraps[i];
-  const MusclePaths::Object& object = paths_.objects_[static_cast<std::size_t>(wrap.object)];
+  const MusclePaths::Object& object = paths_.objects_[wrap.object];
   WrapStatus status = WrapStatus::kStraight;
   for (std::size_t k = 0; k + 1 < n; ++k) {
     if (w_.nodes[k].wrap >= 0 && w_.nodes[k].wrap == w_.nodes[k + 1].wrap) continue;

@@ -31,8 +31,8 @@ inline void PathSolver<Scalar>::all(std::span<const std::uint8_t> skip) {
     const MusclePaths::Variant& variant = paths_.variants_[path.variants + held];
     Scalar length(variant.constant);
     for (std::size_t s = variant.segments; s < variant.end_segments; ++s)
-      length += w_.segment_length[static_cast<std::size_t>(paths_.variant_segments_[s])];
-    w_.length[static_cast<std::size_t>(path.muscle)] = length;
+      length += w_.segment_length[paths_.variant_segments_[s]];
+    w_.length[path.muscle] = length;
     if constexpr (kGradient) {
       for (std::size_t a = variant.adds; a < variant.end_adds; ++a) {
         const auto& [term, pair] = paths_.variant_adds_[a];
@@ -41,10 +41,9 @@ inline void PathSolver<Scalar>::all(std::span<const std::uint8_t> skip) {
     }
   }
   for (const int muscle : paths_.general_) {
-    const auto m = static_cast<std::size_t>(muscle);
-    if (!skip.empty() && skip[m] != 0) continue;
-    w_.flag[m] = PathFlag::kFine;
-    w_.length[m] = general<kGradient>(paths_.muscles_[m], w_.flag[m]);
+    if (!skip.empty() && skip[muscle] != 0) continue;
+    w_.flag[muscle] = PathFlag::kFine;
+    w_.length[muscle] = general<kGradient>(paths_.muscles_[muscle], w_.flag[muscle]);
   }
 }
 
@@ -52,7 +51,7 @@ template <typename Scalar>
 inline void PathSolver<Scalar>::place(PathPlaces places) {
   const auto at = [&](std::size_t i) {
     const MusclePaths::Point& point = paths_.points_[i];
-    w_.position[i] = kinematics_.pose[static_cast<std::size_t>(point.link)] * point.location;
+    w_.position[i] = kinematics_.pose[point.link] * point.location;
   };
   if (places == PathPlaces::kEvery) {
     for (std::size_t i = 0; i < paths_.points_.size(); ++i)
@@ -63,28 +62,27 @@ inline void PathSolver<Scalar>::place(PathPlaces places) {
   }
   for (std::size_t i = 0; i < paths_.moving_.size(); ++i) {
     const MusclePaths::MovingPoint& moving = paths_.moving_[i];
-    const Pose<Scalar>& pose =
-        kinematics_.pose[static_cast<std::size_t>(paths_.points_[static_cast<std::size_t>(moving.point)].link)];
+    const Pose<Scalar>& pose = kinematics_.pose[paths_.points_[moving.point].link];
     Vector location = pose * moving.in_link.translation;
     for (int axis = 0; axis < 3; ++axis) {
-      const auto a = static_cast<std::size_t>(axis);
       const Vector direction = pose.rotation * moving.in_link.rotation.col(axis).template cast<Scalar>();
-      const int c = moving.coordinate[a];
+      const int c = moving.coordinate[axis];
       numerics::FunctionValue<Scalar> f;
-      if (c >= 0 && (q_[c] < Scalar(moving.low[a]) || q_[c] > Scalar(moving.high[a]))) {
-        f.value =
-            moving.location[a].evaluate(Scalar(q_[c] < Scalar(moving.low[a]) ? moving.low[a] : moving.high[a])).value;
+      if (c >= 0 && (q_[c] < Scalar(moving.low[axis]) || q_[c] > Scalar(moving.high[axis]))) {
+        f.value = moving.location[axis]
+                      .evaluate(Scalar(q_[c] < Scalar(moving.low[axis]) ? moving.low[axis] : moving.high[axis]))
+                      .value;
       } else {
-        f = moving.location[a].evaluate(c >= 0 ? q_[c] : Scalar(0.0));
+        f = moving.location[axis].evaluate(c >= 0 ? q_[c] : Scalar(0.0));
       }
       location += direction * f.value;
-      w_.moving_slope[3 * i + a] = direction * f.slope;
+      w_.moving_slope[3 * i + axis] = direction * f.slope;
     }
-    w_.position[static_cast<std::size_t>(moving.point)] = location;
+    w_.position[moving.point] = location;
   }
   for (std::size_t i = 0; i < paths_.objects_.size(); ++i) {
     const MusclePaths::Object& object = paths_.objects_[i];
-    const Pose<Scalar>& pose = kinematics_.pose[static_cast<std::size_t>(object.link)];
+    const Pose<Scalar>& pose = kinematics_.pose[object.link];
     w_.object[i].rotation = pose.rotation * object.in_link.rotation.template cast<Scalar>();
     w_.object[i].position = pose * object.in_link.translation;
   }
@@ -102,8 +100,8 @@ inline void PathSolver<Scalar>::segments() {
   }
   for (std::size_t i = first_in_ground; i < paths_.segments_.size(); ++i) {
     const MusclePaths::Segment& s = paths_.segments_[i];
-    const Vector& a = w_.position[static_cast<std::size_t>(s.a)];
-    const Vector u = w_.position[static_cast<std::size_t>(s.b)] - a;
+    const Vector& a = w_.position[s.a];
+    const Vector u = w_.position[s.b] - a;
     const Scalar length = sqrt(u.squaredNorm());
     w_.segment_length[i] = length;
     if constexpr (kGradient) {
@@ -112,10 +110,10 @@ inline void PathSolver<Scalar>::segments() {
       for (std::size_t t = s.terms[0]; t < s.terms[1]; ++t) {
         const MusclePaths::Term& term = paths_.terms_[t];
         if (term.moving >= 0) {
-          const Scalar along = d.dot(w_.moving_slope[static_cast<std::size_t>(term.moving)]);
+          const Scalar along = d.dot(w_.moving_slope[term.moving]);
           w_.term[t] = term.sign > 0 ? along : Scalar(-along);
         } else {
-          const SpatialVector<Scalar>& column = kinematics_.columns[static_cast<std::size_t>(term.coordinate)];
+          const SpatialVector<Scalar>& column = kinematics_.columns[term.coordinate];
           const Scalar along = column.angular.dot(m) + column.linear.dot(d);
           w_.term[t] = term.sign > 0 ? along : Scalar(-along);
         }
@@ -127,8 +125,8 @@ inline void PathSolver<Scalar>::segments() {
 template <typename Scalar>
 inline void PathSolver<Scalar>::lengths_between(const MusclePaths::LinkPair& pair) {
   using std::sqrt;
-  const Pose<Scalar>& to = kinematics_.pose[static_cast<std::size_t>(pair.a)];
-  const Pose<Scalar>& from = kinematics_.pose[static_cast<std::size_t>(pair.b)];
+  const Pose<Scalar>& to = kinematics_.pose[pair.a];
+  const Pose<Scalar>& from = kinematics_.pose[pair.b];
   const Matrix3<Scalar> r = to.rotation.transpose() * from.rotation;
   const Vector t = to.rotation.transpose() * (from.position - to.position);
   const double* ax = paths_.end_a_[0].data();
@@ -146,7 +144,7 @@ inline void PathSolver<Scalar>::lengths_between(const MusclePaths::LinkPair& pai
   }
   if constexpr (std::is_same_v<Scalar, double>) {
     // As an array, so that roots are taken two at a time.
-    Eigen::Map<Eigen::ArrayXd> roots(length + pair.first, static_cast<Eigen::Index>(pair.end - pair.first));
+    Eigen::Map<Eigen::ArrayXd> roots(length + pair.first, pair.end - pair.first);
     roots = roots.sqrt();
   } else {
     for (std::size_t i = pair.first; i < pair.end; ++i) length[i] = sqrt(length[i]);

@@ -14,7 +14,7 @@ namespace veridyn::muscle {
 template <typename Scalar>
 inline std::size_t PathSolver<Scalar>::nodes_of(int muscle) {
   PathFlag flag = PathFlag::kFine;
-  const Path& path = paths_.muscles_[static_cast<std::size_t>(muscle)];
+  const Path& path = paths_.muscles_[muscle];
   stations(path);
   detect(path, flag);
   return solve(path, ~0u);
@@ -25,7 +25,7 @@ inline bool PathSolver<Scalar>::wrap_between(const MusclePaths::Object& object, 
                                              const MusclePaths::Wrap& wrap, bool single, const Vector& p_ground,
                                              const Vector& q_ground, WrapResult<Scalar>& r,
                                              internal::GeodesicMemory* memory) {
-  const auto& frame = w_.object[static_cast<std::size_t>(index)];
+  const auto& frame = w_.object[index];
   // Most segments pass far from most objects.
   if (object.reach > 0.0) {
     const Eigen::Vector3d a = value_of(Vector(p_ground - frame.position));
@@ -102,8 +102,8 @@ inline void PathSolver<Scalar>::stations(const Path& path) {
         !MusclePaths::Condition{station.condition, station.low, station.high}.holds(value_of(q_[station.condition])))
       continue;
     Node& node = w_.stations[n_stations_++];
-    node.x = w_.position[static_cast<std::size_t>(station.point)];
-    node.link = paths_.points_[static_cast<std::size_t>(station.point)].link;
+    node.x = w_.position[station.point];
+    node.link = paths_.points_[station.point].link;
     node.point = station.point;
     node.station = static_cast<int>(i);
     node.wrap = -1;
@@ -115,7 +115,7 @@ inline bool PathSolver<Scalar>::detect(const Path& path, PathFlag& flag) {
   bool any = false;
   for (std::size_t i = 0; i < path.wraps.size(); ++i) {
     const MusclePaths::Wrap& wrap = path.wraps[i];
-    const MusclePaths::Object& object = paths_.objects_[static_cast<std::size_t>(wrap.object)];
+    const MusclePaths::Object& object = paths_.objects_[wrap.object];
     w_.first_segment[i] = -1;
     double least = 1e300;
     // Without conditional points every station is there.
@@ -127,14 +127,13 @@ inline bool PathSolver<Scalar>::detect(const Path& path, PathFlag& flag) {
       if (a.station < wrap.first || b.station > wrap.last) continue;
       const WrapResult<Scalar>* r = &w_.fresh;
       if (!wrap.spans.empty()) {
-        const int s = wrap.spans[static_cast<std::size_t>(a.station - wrap.first)];
+        const int s = wrap.spans[a.station - wrap.first];
         if (s < 0) continue;
-        const auto index = static_cast<std::size_t>(s);
-        if (!w_.span_known[index]) {
-          wrap_between(object, wrap.object, wrap, path.wraps.size() == 1, a.x, b.x, w_.span[index]);
-          w_.span_known[index] = 1;
+        if (!w_.span_known[s]) {
+          wrap_between(object, wrap.object, wrap, path.wraps.size() == 1, a.x, b.x, w_.span[s]);
+          w_.span_known[s] = 1;
         }
-        r = &w_.span[index];
+        r = &w_.span[s];
       } else {
         wrap_between(object, wrap.object, wrap, path.wraps.size() == 1, a.x, b.x, w_.fresh);
       }
@@ -165,7 +164,7 @@ inline bool PathSolver<Scalar>::crossing(std::size_t n) const {
     const Node& a = w_.nodes[k];
     if (a.wrap < 0 || a.wrap != w_.nodes[k + 1].wrap) continue;
     const bool between = w_.nodes[k - 1].point < 0 || w_.nodes[k + 2].point < 0;
-    if (between && w_.result[static_cast<std::size_t>(a.wrap)]->depth > 0.0) return true;
+    if (between && w_.result[a.wrap]->depth > 0.0) return true;
   }
   return false;
 }
@@ -198,7 +197,7 @@ inline std::size_t PathSolver<Scalar>::solve_all(const Path& path, unsigned mask
   if (!path.coupled || paths_.mode_ == WrapMode::kAsOpenSim) return n;
   double spread = 1.0;
   for (std::size_t k = 0; k < n; ++k)
-    if (w_.nodes[k].wrap >= 0) spread = std::min(spread, w_.result[static_cast<std::size_t>(w_.nodes[k].wrap)]->spread);
+    if (w_.nodes[k].wrap >= 0) spread = std::min(spread, w_.result[w_.nodes[k].wrap]->spread);
   if (spread >= 0.7) return n;
   // Objects solved one after the other may settle on the longer of two sides: try the other one too.
   bool settled = settled_;
@@ -251,7 +250,7 @@ inline std::size_t PathSolver<Scalar>::settle(const Path& path, unsigned mask) {
     for (std::size_t i = 0; i < path.wraps.size(); ++i) {
       if ((mask >> i & 1u) == 0 || w_.first_segment[i] < 0) continue;
       w_.result[i] = w_.first[i];
-      const int station = w_.stations[static_cast<std::size_t>(w_.first_segment[i])].station;
+      const int station = w_.stations[w_.first_segment[i]].station;
       auto at = static_cast<std::size_t>(w_.first_segment[i]);
       while (w_.nodes[at].station != station) ++at;
       insert(path, i, at, n);
@@ -330,10 +329,9 @@ inline void PathSolver<Scalar>::accelerate(std::size_t n, double moved, Accelera
   for (std::size_t k = 0; k + 1 < n; ++k) {
     const int wrap = w_.nodes[k].wrap;
     if (wrap < 0 || wrap != w_.nodes[k + 1].wrap) continue;
-    const auto i = static_cast<std::size_t>(wrap);
-    if (w_.result[i] != &w_.result_solved[i]) continue;
+    if (w_.result[wrap] != &w_.result_solved[wrap]) continue;
     ++found;
-    later = std::max(later, i);
+    later = std::max(later, wrap);
   }
   if (found != 2 || moved >= 1.0) {
     a.known = 0;
@@ -391,7 +389,7 @@ inline bool PathSolver<Scalar>::remove(int wrap, std::size_t& n) {
 
 template <typename Scalar>
 inline std::size_t PathSolver<Scalar>::choose(std::size_t i, const MusclePaths::Wrap& wrap, std::size_t n) {
-  const MusclePaths::Object& object = paths_.objects_[static_cast<std::size_t>(wrap.object)];
+  const MusclePaths::Object& object = paths_.objects_[wrap.object];
   std::size_t best = n;
   double least = 1e300;
   std::size_t k = 0;
@@ -405,11 +403,10 @@ inline std::size_t PathSolver<Scalar>::choose(std::size_t i, const MusclePaths::
     const bool points = a.station >= 0 && b.station >= 0;
     const WrapResult<Scalar>* r = &w_.fresh;
     if (points && !wrap.spans.empty()) {
-      const int s = wrap.spans[static_cast<std::size_t>(a.station - wrap.first)];
+      const int s = wrap.spans[a.station - wrap.first];
       if (s < 0) continue;
-      const auto index = static_cast<std::size_t>(s);
-      if (w_.span_known[index]) {
-        r = &w_.span[index];
+      if (w_.span_known[s]) {
+        r = &w_.span[s];
       } else {
         wrap_between(object, wrap.object, wrap, false, a.x, b.x, w_.fresh);
       }
@@ -436,7 +433,7 @@ inline std::size_t PathSolver<Scalar>::choose(std::size_t i, const MusclePaths::
 template <typename Scalar>
 inline void PathSolver<Scalar>::insert(const Path& path, std::size_t i, std::size_t at, std::size_t& n) {
   for (std::size_t k = n; k-- > at + 1;) w_.nodes[k + 2] = w_.nodes[k];
-  const int link = paths_.objects_[static_cast<std::size_t>(path.wraps[i].object)].link;
+  const int link = paths_.objects_[path.wraps[i].object].link;
   for (std::size_t j = 0; j < 2; ++j) {
     Node& node = w_.nodes[at + 1 + j];
     node.x = j == 0 ? w_.result[i]->r1 : w_.result[i]->r2;

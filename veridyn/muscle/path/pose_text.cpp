@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/index.hpp"
 
 namespace veridyn::muscle {
 
@@ -11,7 +10,7 @@ std::string pose_text(const Model& model, const MusclePaths& paths, int muscle, 
   std::string text;
   for (std::size_t k = paths.first_pair(muscle); k < paths.end_pair(muscle); ++k) {
     const int index = paths.pairs()[k].coordinate;
-    const Coordinate& c = model.coordinates[at(index)];
+    const Coordinate& c = model.coordinates[index];
     const bool angle = c.motion == CoordinateMotion::kRotational;
     text += fmt::format("{}{} = {:.4g} {}", text.empty() ? "" : ", ", c.name, q(index) / (angle ? kDegree : 1.0),
                         angle ? "deg" : c.unit());

@@ -55,7 +55,7 @@ std::vector<TaskFinding> judged_tasks(const TaskResponses& responses, const Musc
   constexpr double kMostFailed = 0.05;
   for (std::size_t t = 0; t < findings.size(); ++t) {
     TaskFinding& f = findings[t];
-    f.failed = at(sampling.failed.col(signed_index(t)).sum());
+    f.failed = at(sampling.failed.col(t).sum());
     if (!f.obstacle.empty()) continue;
     const double all = static_cast<double>(sampling.samples) * static_cast<double>(sampling.failed.rows());
     const estimation::RowMatrix& target = responses.target(t);

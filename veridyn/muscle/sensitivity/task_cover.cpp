@@ -48,9 +48,8 @@ class CoverSearch {
     for (const std::size_t m : muscles_) {
       double most = 0.0;
       for (const std::size_t t : set.tasks) {
-        most = std::max(most, share_(signed_index(m), signed_index(t)));
-        set.overall +=
-            share_(signed_index(m), signed_index(t)) / static_cast<double>(muscles_.size() * set.tasks.size());
+        most = std::max(most, share_(m, t));
+        set.overall += share_(m, t) / static_cast<double>(muscles_.size() * set.tasks.size());
       }
       set.excited += most >= excites_ ? 1U : 0U;
       set.mean += most / static_cast<double>(muscles_.size());
@@ -138,13 +137,13 @@ TaskCover choose_tasks(const Eigen::MatrixXd& nrmse, const std::vector<bool>& al
   cover.excites.resize(allowed.size());
   for (Eigen::Index m = 0; m < nrmse.rows(); ++m) {
     double most = 0.0;
-    for (const std::size_t t : tasks) most = std::fmax(most, nrmse(m, signed_index(t)));
+    for (const std::size_t t : tasks) most = std::fmax(most, nrmse(m, t));
     cover.greatest.push_back(most);
     (most >= options.least_nrmse ? muscles : cover.unexcited).push_back(at(m));
     if (most < options.least_nrmse) continue;
     for (Eigen::Index t = 0; t < nrmse.cols(); ++t) {
       share(m, t) = std::isfinite(nrmse(m, t)) ? nrmse(m, t) / most : 0.0;
-      if (share(m, t) >= options.share) cover.excites[at(t)].push_back(at(m));
+      if (share(m, t) >= options.share) cover.excites[t].push_back(at(m));
     }
   }
   if (tasks.empty()) return cover;

@@ -3,8 +3,6 @@
 #include <chrono>
 #include <utility>
 
-#include "veridyn/core/index.hpp"
-
 namespace veridyn::muscle {
 namespace {
 
@@ -20,12 +18,12 @@ std::vector<std::size_t> varied(const TaskResponses& responses) {
 /// Values of all unknowns at points of the unit cube of those that vary.
 Eigen::MatrixXd values_at(const TaskResponses& responses, const std::vector<std::size_t>& inputs,
                           const Eigen::MatrixXd& unit) {
-  Eigen::MatrixXd points(unit.rows(), signed_index(responses.unknowns().size()));
+  Eigen::MatrixXd points(unit.rows(), responses.unknowns().size());
   for (std::size_t i = 0; i < responses.unknowns().size(); ++i)
-    points.col(signed_index(i)).setConstant(responses.unknowns()[i].start);
+    points.col(i).setConstant(responses.unknowns()[i].start);
   for (std::size_t k = 0; k < inputs.size(); ++k) {
     const MuscleUnknown& u = responses.unknowns()[inputs[k]];
-    points.col(signed_index(inputs[k])) = (u.low + (u.high - u.low) * unit.col(signed_index(k)).array()).matrix();
+    points.col(inputs[k]) = (u.low + (u.high - u.low) * unit.col(k).array()).matrix();
   }
   return points;
 }
@@ -48,8 +46,8 @@ TaskIndices task_indices(const TaskResponses& responses, std::span<const std::si
   result.completed = table.completed;
   if (!table.completed) return result;
   for (std::size_t k = 0; k < tasks.size(); ++k)
-    result.results.push_back(estimation::result_indices(names[tasks[k]], table.nrmse.col(signed_index(k)), design,
-                                                        options, result.warnings));
+    result.results.push_back(
+        estimation::result_indices(names[tasks[k]], table.nrmse.col(k), design, options, result.warnings));
   if (tasks.size() > 1)
     result.results.push_back(estimation::result_indices("sum of the chosen tasks", table.nrmse.rowwise().sum(), design,
                                                         options, result.warnings));

@@ -78,7 +78,7 @@ ResponseTable respond(const TaskResponses& responses, const Eigen::MatrixXd& poi
   for (const std::size_t t : tasks) print.add(static_cast<std::uint64_t>(t));
   const auto one = [&](std::size_t item) {
     const std::size_t row = item / tasks.size(), task = item % tasks.size();
-    return responses.nrmse(tasks[task], points.row(signed_index(row)).transpose());
+    return responses.nrmse(tasks[task], points.row(row).transpose());
   };
   const numerics::BatchValues found = store.compute(
       {.name = batch, .fingerprint = print.value(), .items = rows * tasks.size(), .value = one}, progress);

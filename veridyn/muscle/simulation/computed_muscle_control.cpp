@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/dynamics/coordinate_forces.hpp"
 #include "veridyn/muscle/simulation/muscle_window.hpp"
 #include "veridyn/muscle/simulation/system_evaluator.hpp"
@@ -20,11 +19,11 @@ namespace {
 std::vector<numerics::PiecewisePolynomial> desired_motion(const MusculoskeletalSystem& system, const Motion& motion) {
   std::vector<numerics::PiecewisePolynomial> splines;
   for (const int c : system.reduction().free()) {
-    const auto& spline = motion.coordinate[at(c)];
+    const auto& spline = motion.coordinate[c];
     if (!spline) {
       throw InputError(system.model().name,
                        fmt::format("coordinate '{}' is free but not in the motion to follow; lock it or give it",
-                                   system.model().coordinates[at(c)].name));
+                                   system.model().coordinates[c].name));
     }
     splines.push_back(*spline);
   }
@@ -43,7 +42,7 @@ class Controller {
         ahead_(system),
         window_(system.muscles()),
         stepper_(system, {.tolerance = options.accuracy, .smallest_step = 1e-12 * (options.end - options.begin)}),
-        qp_(signed_index(desired_.size()), signed_index(system.muscles().size() + desired_.size())),
+        qp_(desired_.size(), system.muscles().size() + desired_.size()),
         muscles_(system.muscles().size()),
         low_(muscles_, options.min_control),
         high_(muscles_, options.max_control),
@@ -66,7 +65,7 @@ class Controller {
     // Reserves that the options leave out cost so much that they carry only what the muscles cannot.
     constexpr double kCostlyReserve = 1e-3;
     for (const int c : system.reduction().free()) {
-      const double force = options.reserve_forces.empty() ? options.reserve_force : options.reserve_forces[at(c)];
+      const double force = options.reserve_forces.empty() ? options.reserve_force : options.reserve_forces[c];
       reserve_optimal_.push_back(force > 0.0 ? force : kCostlyReserve);
       reserve_limit_.push_back(std::max(force, 0.1));
     }
@@ -87,8 +86,7 @@ class Controller {
     const CoordinateReduction& reduction = system_.reduction();
     for (std::size_t c = 0; c < qddot_.size(); ++c) {
       const int root = reduction.free_root(static_cast<int>(c));
-      qddot_[c] = s.bias(static_cast<Eigen::Index>(c)) +
-                  (root >= 0 ? s.slope(static_cast<Eigen::Index>(c)) * zddot_[at(root)] : 0.0);
+      qddot_[c] = s.bias(c) + (root >= 0 ? s.slope(c) * zddot_[root] : 0.0);
     }
     ahead_.dynamics().dynamics().inverse_dynamics(qddot_.data(), nullptr, moment_.data());
     std::fill(reserve_.begin(), reserve_.end(), 0.0);
@@ -98,7 +96,7 @@ class Controller {
     qp_.A.setZero();
     for (std::size_t c = 0; c < moment_.size(); ++c) {
       const int root = reduction.free_root(static_cast<int>(c));
-      if (root >= 0) qp_.b(root) += s.slope(static_cast<Eigen::Index>(c)) * (moment_[c] - reserve_[c]);
+      if (root >= 0) qp_.b(root) += s.slope(c) * (moment_[c] - reserve_[c]);
     }
     const auto pairs = system_.pairs();
     for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -111,32 +109,31 @@ class Controller {
   /// the free coordinates. Writes force_ and reserve_.
   void distribute_forces() {
     for (std::size_t m = 0; m < muscles_; ++m) {
-      const auto i = static_cast<Eigen::Index>(m);
       const RigidTendonForces rigid =
           system_.muscles().rigid_forces(m, 1.0, ahead_.path_length()[m], ahead_.path_speed()[m]);
       const double least = 0.01 * system_.muscles().max_isometric_force(m);
       optimal_[m] = std::max(rigid.active, least);
-      qp_.weight(i) = 2.0 / (optimal_[m] * optimal_[m]);
-      qp_.low(i) = std::min(force_low_[m], force_high_[m]);
-      qp_.high(i) = std::max(force_low_[m], force_high_[m]);
+      qp_.weight(m) = 2.0 / (optimal_[m] * optimal_[m]);
+      qp_.low(m) = std::min(force_low_[m], force_high_[m]);
+      qp_.high(m) = std::max(force_low_[m], force_high_[m]);
     }
     for (std::size_t f = 0; f < desired_.size(); ++f) {
       const auto i = static_cast<Eigen::Index>(muscles_ + f);
       qp_.weight(i) = 2.0 / (reserve_optimal_[f] * reserve_optimal_[f]);
-      qp_.A(static_cast<Eigen::Index>(f), i) = 1.0;
+      qp_.A(f, i) = 1.0;
     }
     static_cast<void>(qp_.solve());
-    for (std::size_t m = 0; m < muscles_; ++m) force_[m] = qp_.x()(static_cast<Eigen::Index>(m));
+    for (std::size_t m = 0; m < muscles_; ++m) force_[m] = qp_.x()(m);
     std::fill(reserve_.begin(), reserve_.end(), 0.0);
     for (std::size_t f = 0; f < desired_.size(); ++f) {
-      reserve_[at(system_.reduction().free()[f])] = qp_.x()(static_cast<Eigen::Index>(muscles_ + f));
+      reserve_[system_.reduction().free()[f]] = qp_.x()(muscles_ + f);
     }
   }
 
   /// Whether a reserve gives more than its force.
   [[nodiscard]] bool overloaded() const {
     for (std::size_t f = 0; f < desired_.size(); ++f)
-      if (std::abs(reserve_[at(system_.reduction().free()[f])]) > reserve_limit_[f]) return true;
+      if (std::abs(reserve_[system_.reduction().free()[f]]) > reserve_limit_[f]) return true;
     return false;
   }
 
@@ -311,7 +308,7 @@ ControlResult computed_muscle_control(const MusculoskeletalSystem& system, const
   check(system, options);
   StartState pose = default_start(system.model());
   for (const int c : system.reduction().driven()) {
-    const auto& spline = motion.coordinate[at(c)];
+    const auto& spline = motion.coordinate[c];
     if (spline) pose.q(c) = spline->evaluate(options.begin).value;
   }
   ControlResult result = Controller(system, motion, options).run(pose, progress);
@@ -330,8 +327,7 @@ ControlResult computed_muscle_control(const MusculoskeletalSystem& system, const
   result.desired = result.trajectory.q;
   for (const int c : system.reduction().free()) {
     for (std::size_t i = 0; i < result.trajectory.time.size(); ++i) {
-      result.desired(static_cast<Eigen::Index>(i), c) =
-          motion.coordinate[at(c)]->evaluate(result.trajectory.time[i]).value;
+      result.desired(i, c) = motion.coordinate[c]->evaluate(result.trajectory.time[i]).value;
     }
   }
   return result;

@@ -38,12 +38,12 @@ ContactRecord record_contacts(const MusculoskeletalSystem& system, const std::ve
   std::vector<double> sign;
   for (const SphereContact& contact : model.body_forces.contacts) {
     if (mechanism.body(contact.sphere_body).link > 0) {
-      add_source(contact.name, model.bodies[at(contact.sphere_body)].name, record);
+      add_source(contact.name, model.bodies[contact.sphere_body].name, record);
       contacts.push_back(&contact);
       sign.push_back(1.0);
     }
     if (mechanism.body(contact.plane_body).link > 0) {
-      add_source(contact.name + "_plane", model.bodies[at(contact.plane_body)].name, record);
+      add_source(contact.name + "_plane", model.bodies[contact.plane_body].name, record);
       contacts.push_back(&contact);
       sign.push_back(-1.0);
     }

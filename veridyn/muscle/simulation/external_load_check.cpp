@@ -46,7 +46,7 @@ double distance_from_body(const MusculoskeletalSystem& system, const ExternalLoa
   for (Eigen::Index i = 0; i < analysis.q.rows(); ++i) {
     const Eigen::VectorXd q = analysis.q.row(i);
     update_positions(mechanism, q.data(), kinematics);
-    const SpatialVector<double> wrench = external_wrench(load, analysis.time[at(i)], mechanism, kinematics);
+    const SpatialVector<double> wrench = external_wrench(load, analysis.time[i], mechanism, kinematics);
     const Eigen::Vector3d origin = body_pose(mechanism, kinematics, load.body).position;
     const Eigen::Vector3d moment = wrench.angular - origin.cross(wrench.linear);
     const double size = wrench.linear.norm();
@@ -76,7 +76,7 @@ int lifting_coordinate(const MusculoskeletalSystem& system) {
   if (!(model.gravity.norm() > 0.0)) return -1;
   const Eigen::Vector3d up = -model.gravity.normalized();
   for (const int c : system.reduction().free()) {
-    const Joint& joint = model.joints[at(model.coordinates[at(c)].joint)];
+    const Joint& joint = model.joints[model.coordinates[c].joint];
     if (joint.parent != 0) continue;
     for (const TransformAxis& axis : joint.translation) {
       if (axis.coordinate != c || !axis.function.is_linear() || axis.function.is_constant()) continue;
@@ -104,7 +104,7 @@ std::vector<std::string> external_load_warnings(const MusculoskeletalSystem& sys
   std::vector<std::string> warnings;
   const ExternalLoadFit fit = external_load_fit(system, analysis);
   if (fit.coordinate >= 0) {
-    const std::string& name = system.model().coordinates[at(fit.coordinate)].name;
+    const std::string& name = system.model().coordinates[fit.coordinate].name;
     const double share = 100.0 * fit.with / fit.weight;
     if (fit.with > fit.without) {
       warnings.push_back(fmt::format(
@@ -124,7 +124,7 @@ std::vector<std::string> external_load_warnings(const MusculoskeletalSystem& sys
     if (distance > kFar)
       warnings.push_back(fmt::format(
           "external load '{}' acts {:.3g} m from body '{}' (median): is its point in millimetres, or in another frame?",
-          load.name, distance, system.model().bodies[at(load.body)].name));
+          load.name, distance, system.model().bodies[load.body].name));
   }
   return warnings;
 }
@@ -138,7 +138,7 @@ std::string lifting_reserve_warning(const MusculoskeletalSystem& system, const e
   return fmt::format(
       "the reserve of '{}' carries up to {:.3g} N ({:.3g} % of the weight), which only the surroundings "
       "could: external loads are missing or do not fit",
-      system.model().coordinates[at(c)].name, greatest, 100.0 * greatest / weight);
+      system.model().coordinates[c].name, greatest, 100.0 * greatest / weight);
 }
 
 }  // namespace veridyn::muscle

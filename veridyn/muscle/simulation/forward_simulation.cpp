@@ -150,7 +150,7 @@ class Recorder {
 void check_start(const Model& model, const StartState& start) {
   for (std::size_t i = 0; i < model.coordinates.size(); ++i) {
     const Coordinate& c = model.coordinates[i];
-    const double q = start.q(static_cast<Eigen::Index>(i)), speed = start.qdot(static_cast<Eigen::Index>(i));
+    const double q = start.q(i), speed = start.qdot(i);
     if (!std::isfinite(q) || !std::isfinite(speed)) {
       throw InputError(model.name, fmt::format("start of coordinate '{}' is not a finite number", c.name));
     }
@@ -232,7 +232,7 @@ StartState default_start(const Model& model) {
   start.q = model.default_pose();
   start.qdot.setZero(start.q.size());
   for (std::size_t i = 0; i < model.coordinates.size(); ++i) {
-    start.qdot(static_cast<Eigen::Index>(i)) = model.coordinates[i].default_speed;
+    start.qdot(i) = model.coordinates[i].default_speed;
   }
   return start;
 }
@@ -243,10 +243,10 @@ MuscleTrajectory simulate_forward(const MusculoskeletalSystem& system, const Sta
   const StateLayout& layout = system.layout();
   ControlsAtInstant signals(controls, system.muscles().size(), system.coordinates());
   SystemEvaluator<double> evaluator(system);
-  Eigen::VectorXd x(static_cast<Eigen::Index>(layout.size));
+  Eigen::VectorXd x(layout.size);
   for (std::size_t i = 0; i < layout.free; ++i) {
-    x(static_cast<Eigen::Index>(i)) = start.q(system.reduction().free()[i]);
-    x(static_cast<Eigen::Index>(layout.free + i)) = start.qdot(system.reduction().free()[i]);
+    x(i) = start.q(system.reduction().free()[i]);
+    x(layout.free + i) = start.qdot(system.reduction().free()[i]);
   }
   evaluator.hold(start.q.data());
   evaluator.set_motion(x.data(), x.data() + layout.free);
@@ -254,7 +254,7 @@ MuscleTrajectory simulate_forward(const MusculoskeletalSystem& system, const Sta
   evaluator.start_muscles(
       start.activation.size() > 0 ? start.activation.data() : signals.at(options.begin).excitation.data(), x.data());
   for (std::size_t m = 0; m < system.muscles().size() && start.fiber_length.size() > 0; ++m) {
-    if (layout.fiber_length[m] >= 0) x(layout.fiber_length[m]) = start.fiber_length(static_cast<Eigen::Index>(m));
+    if (layout.fiber_length[m] >= 0) x(layout.fiber_length[m]) = start.fiber_length(m);
   }
 
   Recorder recorder(system, options);

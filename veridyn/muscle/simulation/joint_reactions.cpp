@@ -51,13 +51,12 @@ class ReactionSolver {
     evaluator_.hold(q.data());
     evaluator_.set_motion(z_.data(), zdot_.data());
     std::fill(tau_.begin(), tau_.end(), 0.0);
-    for (std::size_t c = 0; c < tau_.size() && moved_.reserve.size() > 0; ++c)
-      tau_[c] = moved_.reserve(row, signed_index(c));
+    for (std::size_t c = 0; c < tau_.size() && moved_.reserve.size() > 0; ++c) tau_[c] = moved_.reserve(row, c);
     const auto pairs = system_.pairs();
     for (std::size_t k = 0; k < pairs.size() && moved_.tendon_force.size() > 0; ++k)
-      tau_[at(pairs[k].coordinate)] -= moved_.tendon_force(row, pairs[k].muscle) * evaluator_.path_gradient()[k];
+      tau_[pairs[k].coordinate] -= moved_.tendon_force(row, pairs[k].muscle) * evaluator_.path_gradient()[k];
     if (moved_.passive) evaluator_.add_passive_forces(tau_.data());
-    evaluator_.add_external_forces(moved_.external, moved_.time[at(row)], tau_.data());
+    evaluator_.add_external_forces(moved_.external, moved_.time[row], tau_.data());
     static_cast<void>(evaluator_.dynamics().forward_dynamics(tau_.data(), nullptr, zddot_.data()));
     return evaluator_.dynamics().qddot();
   }
@@ -68,7 +67,7 @@ class ReactionSolver {
     const Kinematics<double>& kinematics = evaluator_.dynamics().kinematics();
     std::fill(applied_.begin(), applied_.end(), SpatialVector<double>{});
     if (moved_.external != nullptr)
-      add_external_forces(*moved_.external, moved_.time[at(row)], mechanism, kinematics, applied_.data());
+      add_external_forces(*moved_.external, moved_.time[row], mechanism, kinematics, applied_.data());
     if (moved_.passive) system_.passive().add_to_links(mechanism, kinematics, q_.data(), evaluator_.qdot(), applied_);
     for (Eigen::Index m = 0; m < moved_.tendon_force.cols(); ++m)
       system_.paths().add_tension(kinematics, q_.data(), static_cast<int>(m), moved_.tendon_force(row, m), paths_,
@@ -113,7 +112,7 @@ JointReactions joint_reactions(const MusculoskeletalSystem& system, const MovedM
     solver.solve(row);
     const Kinematics<double>& kinematics = solver.dynamics().kinematics();
     for (std::size_t k = 0; k < reactions.joints.size(); ++k) {
-      const Joint& joint = model.joints[at(reactions.joints[k])];
+      const Joint& joint = model.joints[reactions.joints[k]];
       const SpatialVector<double>& wrench = solver.dynamics().joint_force(mechanism.body(joint.child).link);
       const Eigen::Vector3d origin = body_pose(mechanism, kinematics, joint.child) * joint.child_frame.translation;
       const Eigen::Matrix3d axes = axes_of(joint, mechanism, kinematics, frame);

@@ -19,7 +19,7 @@ Instant instant_of(const Motion& motion, const Eigen::VectorXd& rest, const Coor
                    double time) {
   Instant now{rest, Eigen::VectorXd::Zero(rest.size()), Eigen::VectorXd::Zero(rest.size())};
   for (Eigen::Index c = 0; c < rest.size(); ++c) {
-    const auto& spline = motion.coordinate[at(c)];
+    const auto& spline = motion.coordinate[c];
     if (!spline) continue;
     const numerics::FunctionValue<double> value = spline->evaluate(time);
     now.q(c) = value.value;
@@ -40,10 +40,9 @@ MotionAnalysis empty_analysis(const MusculoskeletalSystem& system, const std::ve
   MotionAnalysis a;
   a.time = time;
   const auto rows = signed_index(time.size());
-  for (auto* m : {&a.q, &a.qdot, &a.qddot, &a.moment})
-    m->setZero(rows, static_cast<Eigen::Index>(system.coordinates()));
-  if (loaded) a.external.setZero(rows, static_cast<Eigen::Index>(system.coordinates()));
-  for (auto* m : {&a.path_length, &a.path_speed}) m->setZero(rows, signed_index(system.muscles().size()));
+  for (auto* m : {&a.q, &a.qdot, &a.qddot, &a.moment}) m->setZero(rows, system.coordinates());
+  if (loaded) a.external.setZero(rows, system.coordinates());
+  for (auto* m : {&a.path_length, &a.path_speed}) m->setZero(rows, system.muscles().size());
   return a;
 }
 
@@ -56,12 +55,12 @@ void analyse(const Instant& now, Eigen::Index row, const ExternalLoads* external
   a.qddot.row(row) = now.qddot;
   evaluator.dynamics().dynamics().inverse_dynamics(now.qddot.data(), nullptr, a.moment.row(row).data());
   if (external != nullptr) {
-    evaluator.add_external_forces(external, a.time[at(row)], a.external.row(row).data());
+    evaluator.add_external_forces(external, a.time[row], a.external.row(row).data());
     a.moment.row(row) -= a.external.row(row);
   }
   for (Eigen::Index m = 0; m < a.path_length.cols(); ++m) {
-    a.path_length(row, m) = evaluator.path_length()[at(m)];
-    a.path_speed(row, m) = evaluator.path_speed()[at(m)];
+    a.path_length(row, m) = evaluator.path_length()[m];
+    a.path_speed(row, m) = evaluator.path_speed()[m];
   }
 }
 
@@ -87,8 +86,7 @@ MotionAnalysis analyse_motion(const MusculoskeletalSystem& system, const Motion&
   MotionAnalysis analysis = empty_analysis(system, time, motion.external != nullptr);
   SystemEvaluator<double> evaluator(system);
   for (std::size_t i = 0; i < time.size(); ++i)
-    analyse(instant_of(motion, rest, system.reduction(), time[i]), signed_index(i), motion.external.get(), evaluator,
-            analysis);
+    analyse(instant_of(motion, rest, system.reduction(), time[i]), i, motion.external.get(), evaluator, analysis);
   return analysis;
 }
 
@@ -102,12 +100,12 @@ MotionAnalysis optimise_motion(const MusculoskeletalSystem& system, const Motion
   const auto n = signed_index(free.size());
   analysis.activation.setZero(rows, muscles);
   analysis.force.setZero(rows, muscles);
-  analysis.reserve.setZero(rows, static_cast<Eigen::Index>(system.coordinates()));
+  analysis.reserve.setZero(rows, system.coordinates());
   // Reserves are given by coordinate; the optimiser knows the free ones.
   StaticOptimizationOptions reduced = options;
   reduced.reserve.clear();
   for (const int c : free) {
-    if (!options.reserve.empty()) reduced.reserve.push_back(options.reserve[at(c)]);
+    if (!options.reserve.empty()) reduced.reserve.push_back(options.reserve[c]);
   }
   StaticOptimizer optimizer(muscle_parameters(system.model()), reduced);
   StaticOptimizationFrame frame;
@@ -115,16 +113,15 @@ MotionAnalysis optimise_motion(const MusculoskeletalSystem& system, const Motion
   Eigen::MatrixXd arms(muscles, n);
   Eigen::VectorXd required(n), limits(rest.size());
   for (std::size_t i = 0; i < time.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
     const Instant now = instant_of(motion, rest, system.reduction(), time[i]);
-    analyse(now, row, motion.external.get(), evaluator, analysis);
+    analyse(now, i, motion.external.get(), evaluator, analysis);
     const Eigen::VectorXd slope = coupled_slopes(now.q, system.reduction());
     limits.setZero();
     evaluator.add_passive_forces(limits.data());
     required.setZero();
     for (Eigen::Index c = 0; c < rest.size(); ++c) {
       const int root = system.reduction().free_root(static_cast<int>(c));
-      if (root >= 0) required(root) += slope(c) * (analysis.moment(row, c) - limits(c));
+      if (root >= 0) required(root) += slope(c) * (analysis.moment(i, c) - limits(c));
     }
     arms.setZero();
     const auto pairs = system.pairs();
@@ -132,12 +129,12 @@ MotionAnalysis optimise_motion(const MusculoskeletalSystem& system, const Motion
       const int root = system.reduction().free_root(pairs[k].coordinate);
       if (root >= 0) arms(pairs[k].muscle, root) -= slope(pairs[k].coordinate) * evaluator.path_gradient()[k];
     }
-    optimizer.solve(arms, analysis.path_length.row(row).transpose(), analysis.path_speed.row(row).transpose(), required,
+    optimizer.solve(arms, analysis.path_length.row(i).transpose(), analysis.path_speed.row(i).transpose(), required,
                     frame);
-    analysis.activation.row(row) = frame.activation;
-    analysis.force.row(row) = frame.force;
+    analysis.activation.row(i) = frame.activation;
+    analysis.force.row(i) = frame.force;
     for (Eigen::Index f = 0; f < n && !reduced.reserve.empty(); ++f) {
-      analysis.reserve(row, free[at(f)]) = frame.reserve(f) * reduced.reserve[at(f)];
+      analysis.reserve(i, free[f]) = frame.reserve(f) * reduced.reserve[f];
     }
     if (!frame.usable()) analysis.infeasible.push_back(i);
     if (i % 100 == 99 && !progress.update(static_cast<double>(i + 1) / static_cast<double>(time.size()))) {

@@ -44,7 +44,7 @@ void MuscleWindow::set_paths(double duration, const std::array<std::vector<doubl
 
 void MuscleWindow::set_states(std::span<const double> activation, std::span<const double> fiber_length) {
   std::copy(activation.begin(), activation.end(), start_.begin());
-  std::copy(fiber_length.begin(), fiber_length.end(), start_.begin() + static_cast<std::ptrdiff_t>(n_));
+  std::copy(fiber_length.begin(), fiber_length.end(), start_.begin() + n_);
 }
 
 void MuscleWindow::path_at(double t) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/path/pose_text.hpp"
 
 namespace veridyn::muscle {
@@ -17,8 +16,8 @@ int find_coordinate(const Model& model, const std::string& name) {
 
 /// The model as it moves: coordinates locked and unlocked by the options, disabled muscles left out.
 Model prepare(Model model, const SystemOptions& options, std::vector<std::string>& notes) {
-  for (const std::string& name : options.locked) model.coordinates[at(find_coordinate(model, name))].locked = true;
-  for (const std::string& name : options.unlocked) model.coordinates[at(find_coordinate(model, name))].locked = false;
+  for (const std::string& name : options.locked) model.coordinates[find_coordinate(model, name)].locked = true;
+  for (const std::string& name : options.unlocked) model.coordinates[find_coordinate(model, name)].locked = false;
   std::vector<std::string> left_out;
   for (const UnsupportedElement& u : model.unsupported) {
     if (u.changes_motion) left_out.push_back(fmt::format("{} '{}'", u.element, u.name));
@@ -49,7 +48,7 @@ void note_points_inside(const Model& model, const Mechanism& mechanism, const Mu
   update_positions(mechanism, q.data(), kinematics);
   for (const MusclePaths::PointInside& found : paths.points_inside(kinematics, q.data()))
     notes.push_back(fmt::format("at the default pose ({}) muscle {}: point {} lies {:.2g} mm inside its wrap object {}",
-                                pose_text(model, paths, found.muscle, q), model.muscles[at(found.muscle)].name(),
+                                pose_text(model, paths, found.muscle, q), model.muscles[found.muscle].name(),
                                 found.point, found.depth * 1e3, found.object));
 }
 
@@ -78,7 +77,7 @@ std::string fit_note(const Model& model, const FittedPaths& fit) {
 
 Model with_changes(Model model, const SystemChanges& changes) {
   for (const HeldLoad& load : changes.loads) add_load(model, load.body, load.mass, load.location);
-  for (const std::string& name : changes.locked) model.coordinates[at(find_coordinate(model, name))].locked = true;
+  for (const std::string& name : changes.locked) model.coordinates[find_coordinate(model, name)].locked = true;
   if (changes.muscles.empty()) return model;
   if (changes.muscles.size() != model.muscles.size())
     throw InputError(model.name, fmt::format("has {} muscles; {} are to take their place", model.muscles.size(),

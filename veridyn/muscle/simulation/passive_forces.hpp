@@ -50,7 +50,7 @@ class PassiveForces {
       Scalar speed(0.0);
       for (std::size_t k = paths_->first_pair(m); k < paths_->end_pair(m); ++k)
         speed += w.gradient[k] * qdot[paths_->pairs()[k].coordinate];
-      const Scalar tension = passive_tension(laws_[at(m)], w.length[at(m)], speed);
+      const Scalar tension = passive_tension(laws_[m], w.length[m], speed);
       for (std::size_t k = paths_->first_pair(m); k < paths_->end_pair(m); ++k)
         tau[paths_->pairs()[k].coordinate] -= tension * w.gradient[k];
     }

@@ -1,6 +1,5 @@
 #include "veridyn/muscle/simulation/path_derivatives.hpp"
 
-#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/model/simulation_jet.hpp"
 #include "veridyn/muscle/path/path_workspace.hpp"
 
@@ -37,7 +36,7 @@ class JetPathDerivatives final : public PathDerivatives {
       for (std::size_t p = 0; p < gradient_.size(); ++p) {
         gradient_[p] = gradient_jets_[p].a;
         for (std::size_t k = first; k < std::min(free_, first + kWidth); ++k)
-          curvature_[p * free_ + k] = gradient_jets_[p].v(static_cast<Eigen::Index>(k - first));
+          curvature_[p * free_ + k] = gradient_jets_[p].v(k - first);
       }
     }
     for (std::size_t m = 0; m < length_.size(); ++m) length_[m] = length_jets_[m].a;

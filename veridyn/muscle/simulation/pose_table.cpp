@@ -19,7 +19,7 @@ namespace veridyn::muscle {
 namespace {
 
 void check_range(const Model& model, const std::string& place, Eigen::Index index, double value) {
-  const Coordinate& c = model.coordinates[static_cast<std::size_t>(index)];
+  const Coordinate& c = model.coordinates[index];
   if (!std::isfinite(value)) throw InputError(place, fmt::format("coordinate '{}' is not a finite number", c.name));
   if (!c.in_range(value)) throw InputError(place, c.outside_range(value));
 }
@@ -47,8 +47,7 @@ int read_assignment(const Model& model, const std::string& text, Eigen::VectorXd
   }
   if (const std::string unit = trimmed(value.substr(used)); !unit.empty()) {
     try {
-      number =
-          parse_unit_like(unit, parse_unit(model.coordinates[static_cast<std::size_t>(index)].unit())).to_si(number);
+      number = parse_unit_like(unit, parse_unit(model.coordinates[index].unit())).to_si(number);
     } catch (const InputError& error) {
       throw InputError(place, fmt::format("coordinate '{}': {}", name, error.what()));
     }
@@ -65,14 +64,14 @@ bool differ(double given, double coupled) { return std::abs(given - coupled) > 1
 void couple(const Model& model, PoseTable& poses, std::span<const std::uint8_t> given, bool is_file) {
   const CoordinateReduction reduction(model);
   for (const CoordinateReduction::Coupler& coupler : reduction.couplers()) {
-    const Coordinate& dependent = model.coordinates[static_cast<std::size_t>(coupler.dependent)];
-    const std::string& leader = model.coordinates[static_cast<std::size_t>(coupler.independent)].name;
+    const Coordinate& dependent = model.coordinates[coupler.dependent];
+    const std::string& leader = model.coordinates[coupler.independent].name;
     double largest = 0.0;
     std::size_t rows = 0;
     for (std::size_t i = 0; i < poses.q.size(); ++i) {
       const numerics::FunctionValue<double> f = coupler.function.evaluate(poses.q[i](coupler.independent));
       const double speed = poses.qdot[i](coupler.independent), was = poses.q[i](coupler.dependent);
-      if (given[static_cast<std::size_t>(coupler.dependent)] != 0 && differ(was, f.value)) {
+      if (given[coupler.dependent] != 0 && differ(was, f.value)) {
         if (!is_file)
           throw InputError(
               "--pose", fmt::format("coordinate '{}' = {:.6g} {} follows '{}' through a coupler, which "
@@ -97,7 +96,7 @@ void couple(const Model& model, PoseTable& poses, std::span<const std::uint8_t> 
 template <typename Column>
 PoseTable from_columns(const Model& model, const std::string& place, std::size_t rows, const Column& column) {
   std::vector<std::uint8_t> given(model.coordinates.size(), 0), coupled(model.coordinates.size(), 0);
-  for (const CoordinateCoupler& coupler : model.couplers) coupled[static_cast<std::size_t>(coupler.dependent)] = 1;
+  for (const CoordinateCoupler& coupler : model.couplers) coupled[coupler.dependent] = 1;
   PoseTable poses;
   const Eigen::VectorXd rest = model.default_pose();
   poses.q.assign(rows, rest);
@@ -105,16 +104,15 @@ PoseTable from_columns(const Model& model, const std::string& place, std::size_t
   poses.qddot.assign(rows, Eigen::VectorXd::Zero(rest.size()));
   bool any = false;
   for (Eigen::Index c = 0; c < rest.size(); ++c) {
-    const Coordinate& coordinate = model.coordinates[static_cast<std::size_t>(c)];
+    const Coordinate& coordinate = model.coordinates[c];
     const auto fill = [&](std::vector<Eigen::VectorXd>& to, const char* suffix, bool ranged) {
       const std::vector<double> values = column(coordinate, suffix);
       if (values.empty()) return;
       any = true;
-      if (ranged) given[static_cast<std::size_t>(c)] = 1;
+      if (ranged) given[c] = 1;
       for (std::size_t i = 0; i < rows; ++i) {
         // Where a coupled one ends up is its coupler's affair.
-        if (ranged && coupled[static_cast<std::size_t>(c)] == 0)
-          check_range(model, fmt::format("{}, row {}", place, i + 1), c, values[i]);
+        if (ranged && coupled[c] == 0) check_range(model, fmt::format("{}, row {}", place, i + 1), c, values[i]);
         if (!std::isfinite(values[i]))
           throw InputError(place, fmt::format("row {}: '{}' is not a finite number", i + 1, coordinate.name));
         to[i](c) = values[i];
@@ -152,7 +150,7 @@ PoseTable read_motion(const Model& model, const std::string& file) {
     const int index =
         suffix == "value" ? table.find(coordinate.name, suffix) : table.find(coordinate.name + "/" + suffix, suffix);
     if (index < 0) return {};
-    std::vector<double> values = table.values[static_cast<std::size_t>(index)];
+    std::vector<double> values = table.values[index];
     if (table.rotations_in_degrees && coordinate.motion == CoordinateMotion::kRotational) {
       for (double& v : values) v *= kDegree;
     }
@@ -175,7 +173,7 @@ PoseTable read_poses(const Model& model, const std::string& text) {
     for (std::size_t begin = 0; begin <= text.size();) {
       const std::size_t end = std::min(text.find(',', begin), text.size());
       if (const std::string part = trimmed(text.substr(begin, end - begin)); !part.empty())
-        given[static_cast<std::size_t>(read_assignment(model, part, q))] = 1;
+        given[read_assignment(model, part, q)] = 1;
       begin = end + 1;
     }
     poses.q = {q};
@@ -191,12 +189,11 @@ std::string pose_csv(const MusculoskeletalSystem& system, const PoseTable& poses
   // An arm about a coordinate that others follow takes their motion along.
   std::vector<int> leader(model.coordinates.size(), -1);
   const auto couplers = system.reduction().couplers();
-  for (const CoordinateReduction::Coupler& coupler : couplers)
-    leader[static_cast<std::size_t>(coupler.dependent)] = coupler.independent;
+  for (const CoordinateReduction::Coupler& coupler : couplers) leader[coupler.dependent] = coupler.independent;
   std::vector<std::pair<int, int>> arms;
   for (const MusclePaths::Pair& pair : pairs) {
     int c = pair.coordinate;
-    while (leader[static_cast<std::size_t>(c)] >= 0) c = leader[static_cast<std::size_t>(c)];
+    while (leader[c] >= 0) c = leader[c];
     if (arms.empty() || std::find(arms.begin(), arms.end(), std::pair{pair.muscle, c}) == arms.end())
       arms.emplace_back(pair.muscle, c);
   }
@@ -206,8 +203,8 @@ std::string pose_csv(const MusculoskeletalSystem& system, const PoseTable& poses
   for (const Coordinate& c : model.coordinates) cell(fmt::format("{}[{}]", c.name, c.unit()));
   for (const Muscle& muscle : model.muscles) cell(muscle.name() + ".length[m]");
   for (const auto& [m, c] : arms) {
-    const Coordinate& coordinate = model.coordinates[static_cast<std::size_t>(c)];
-    cell(fmt::format("{}.moment_arm.{}[{}]", model.muscles[static_cast<std::size_t>(m)].name(), coordinate.name,
+    const Coordinate& coordinate = model.coordinates[c];
+    cell(fmt::format("{}.moment_arm.{}[{}]", model.muscles[m].name(), coordinate.name,
                      coordinate.unit() == "m" ? "1" : "m"));
   }
   for (const Coordinate& c : model.coordinates)
@@ -226,12 +223,12 @@ std::string pose_csv(const MusculoskeletalSystem& system, const PoseTable& poses
         if (pairs[k].muscle != m) continue;
         double along = 1.0;
         int at = pairs[k].coordinate;
-        while (leader[static_cast<std::size_t>(at)] >= 0) {
+        while (leader[at] >= 0) {
           for (const CoordinateReduction::Coupler& coupler : couplers) {
             if (coupler.dependent != at) continue;
             along *= coupler.function.evaluate(poses.q[i](coupler.independent)).slope;
           }
-          at = leader[static_cast<std::size_t>(at)];
+          at = leader[at];
         }
         if (at == c) arm -= along * evaluator.path_gradient()[k];
       }

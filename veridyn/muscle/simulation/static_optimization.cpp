@@ -152,8 +152,8 @@ StaticOptimizer::StaticOptimizer(std::span<const MuscleParameters> muscles, Stat
     for (auto* list : {&work_->activation, &work_->length, &work_->speed}) list->resize(n);
     work_->parts.resize(n);
   }
-  work_->offset.setZero(static_cast<Eigen::Index>(n));
-  work_->gain.setZero(static_cast<Eigen::Index>(n));
+  work_->offset.setZero(n);
+  work_->gain.setZero(n);
 }
 
 StaticOptimizer::~StaticOptimizer() = default;
@@ -174,7 +174,7 @@ void StaticOptimizer::bound_controls(Eigen::Index n, Eigen::Index m) {
     q.high(i) = work_->muscles.settings(static_cast<std::size_t>(i)).max_control;
   }
   for (Eigen::Index j = 0; j < reserves; ++j) {
-    const double optimal = options_.reserve[static_cast<std::size_t>(j)];
+    const double optimal = options_.reserve[j];
     q.B.col(n + j).setZero();
     q.B(j, n + j) = optimal;
     q.low(n + j) = optimal > 0.0 ? -options_.reserve_bound : 0.0;
@@ -204,26 +204,23 @@ StaticOptimizer::Balance StaticOptimizer::balance_with_passive(const Eigen::Matr
   for (std::size_t i = 0; i < length.size(); ++i) {
     w.length[i] = Jet(length[i]);
     w.speed[i] = Jet(speed[i]);
-    const auto e = static_cast<Eigen::Index>(i);
     w.activation[i] =
-        Jet(start.size() == n ? std::clamp(start(e), q.low(e), q.high(e)) : 0.5 * (q.low(e) + q.high(e)), 0);
+        Jet(start.size() == n ? std::clamp(start(i), q.low(i), q.high(i)) : 0.5 * (q.low(i) + q.high(i)), 0);
   }
   for (int round = 0; round < 50 && !result.settled; ++round) {
     w.with_slopes.rigid_parts(w.activation, w.length, w.speed, w.parts);
     for (Eigen::Index i = 0; i < n; ++i) {
-      const auto e = static_cast<std::size_t>(i);
-      const Jet total = w.parts[e].active + w.parts[e].passive;
+      const Jet total = w.parts[i].active + w.parts[i].passive;
       w.gain(i) = total.v[0];
-      w.offset(i) = total.a - total.v[0] * w.activation[e].a;
+      w.offset(i) = total.a - total.v[0] * w.activation[i].a;
     }
     result.balanced = balance(arms, required, tolerance);
     double change = 0.0;
     for (Eigen::Index i = 0; i < n; ++i) {
-      const auto e = static_cast<std::size_t>(i);
-      change = std::max(change, std::abs(q.x(i) - w.activation[e].a));
+      change = std::max(change, std::abs(q.x(i) - w.activation[i].a));
       // Full steps at first; smaller ones should they not settle.
       const double share = round < 20 ? 1.0 : 0.5;
-      w.activation[e] = Jet(w.activation[e].a + share * (q.x(i) - w.activation[e].a), 0);
+      w.activation[i] = Jet(w.activation[i].a + share * (q.x(i) - w.activation[i].a), 0);
     }
     result.settled = change < 1e-11;
   }
@@ -240,15 +237,13 @@ void StaticOptimizer::fill(const Eigen::MatrixXd& arms, const Eigen::VectorXd& r
   frame.force.resize(n);
   for (Eigen::Index i = 0; i < n; ++i)
     frame.force(i) =
-        options_.force == StaticForce::kWithPassive
-            ? (w.parts[static_cast<std::size_t>(i)].active + w.parts[static_cast<std::size_t>(i)].passive).a
-            : w.gain(i) * q.x(i);
+        options_.force == StaticForce::kWithPassive ? (w.parts[i].active + w.parts[i].passive).a : w.gain(i) * q.x(i);
   frame.reserve.setZero(m);
   frame.unbalanced = required;
   frame.unbalanced.noalias() -= arms.transpose() * frame.force;
   for (Eigen::Index j = 0; j < q.x.size() - n; ++j) {
     frame.reserve(j) = q.x(n + j);
-    frame.unbalanced(j) -= options_.reserve[static_cast<std::size_t>(j)] * q.x(n + j);
+    frame.unbalanced(j) -= options_.reserve[j] * q.x(n + j);
   }
   frame.multiplier = q.lambda;
   frame.cost = q.x.cwiseAbs().array().pow(q.p).sum();
@@ -271,12 +266,12 @@ void StaticOptimizer::solve(const Eigen::MatrixXd& arms, const Eigen::VectorXd& 
   Balance result{false, true};
   switch (options_.force) {
     case StaticForce::kIsometric:
-      for (std::size_t i = 0; i < count; ++i) w.gain(static_cast<Eigen::Index>(i)) = w.muscles.max_isometric_force(i);
+      for (std::size_t i = 0; i < count; ++i) w.gain(i) = w.muscles.max_isometric_force(i);
       result.balanced = balance(arms, required, tolerance);
       break;
     case StaticForce::kAsOpenSim:
       w.muscles.rigid_forces(1.0, length, speed, w.forces);
-      for (std::size_t i = 0; i < count; ++i) w.gain(static_cast<Eigen::Index>(i)) = w.forces[i].active;
+      for (std::size_t i = 0; i < count; ++i) w.gain(i) = w.forces[i].active;
       result.balanced = balance(arms, required, tolerance);
       break;
     case StaticForce::kWithPassive:

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/dynamics/coordinate_forces.hpp"
 #include "veridyn/muscle/dynamics/external_forces.hpp"
 #include "veridyn/muscle/model/simulation_jet.hpp"
@@ -69,7 +68,7 @@ void SystemEvaluator<Scalar>::update_paths() {
   std::fill(speed_.begin(), speed_.end(), Scalar(0.0));
   const auto pairs = system_->pairs();
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    speed_[at(pairs[i].muscle)] += gradient_[i] * qdot_[pairs[i].coordinate];
+    speed_[pairs[i].muscle] += gradient_[i] * qdot_[pairs[i].coordinate];
   }
 }
 
@@ -121,7 +120,7 @@ bool SystemEvaluator<Scalar>::write_rates(const Scalar* x, const SystemInputs& i
   }
   const auto pairs = system_->pairs();
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    tau_[at(pairs[i].coordinate)] -= force_[at(pairs[i].muscle)] * gradient_[i];
+    tau_[pairs[i].coordinate] -= force_[pairs[i].muscle] * gradient_[i];
   }
   add_passive_forces(tau_.data());
   add_external_forces(inputs.external, inputs.time, tau_.data());

@@ -97,8 +97,7 @@ void SystemLinearization::make_passes(std::span<const MusculotendonParameters<do
       std::array<std::size_t, 3> field{kNone, kNone, kNone};
       for (std::size_t i = 0; i < 3 && 3 * p + i < wanted[m].size(); ++i) {
         field[i] = wanted[m][3 * p + i];
-        if (field[i] != TangentForcing::kExcitation)
-          field_of(jets.back(), field[i]).v(static_cast<Eigen::Index>(3 + i)) = 1.0;
+        if (field[i] != TangentForcing::kExcitation) field_of(jets.back(), field[i]).v(3 + i) = 1.0;
       }
       pass.field.push_back(field);
     }
@@ -126,15 +125,14 @@ void SystemLinearization::set_paths() {
   const std::span<const double> gradient = paths_->gradient(), curvature = paths_->curvature();
   for (std::size_t p = 0; p < pairs.size(); ++p) {
     const int m = pairs[p].muscle, c = pairs[p].coordinate;
-    path_speed_[at(m)] += gradient[p] * s.qdot(c);
+    path_speed_[m] += gradient[p] * s.qdot(c);
     const int root = system_->reduction().free_root(c);
     if (root >= 0) arm_(m, root) += gradient[p] * s.slope(c);
     if (system_->muscles().has_fiber_state(at(m))) continue;
-    for (std::size_t k = 0; k < free_; ++k)
-      speed_z_(m, static_cast<Eigen::Index>(k)) += curvature[p * free_ + k] * s.qdot(c);
+    for (std::size_t k = 0; k < free_; ++k) speed_z_(m, k) += curvature[p * free_ + k] * s.qdot(c);
     // A coupled coordinate's speed is slope(z) zdot.
     if (root >= 0 && jets_)
-      speed_z_(m, root) += gradient[p] * unit_speed_.bias(c) * s.qdot(system_->reduction().free()[at(root)]);
+      speed_z_(m, root) += gradient[p] * unit_speed_.bias(c) * s.qdot(system_->reduction().free()[root]);
   }
 }
 
@@ -159,7 +157,7 @@ void SystemLinearization::evaluate_muscles(const double* x, const SystemInputs& 
     for (std::size_t m = 0; m < muscles; ++m) {
       if (layout.activation[m] < 0) continue;
       for (Eigen::Index i = 0; i < 3; ++i)
-        in_excitation_[m].v(3 + i) = pass.field[m][at(i)] == TangentForcing::kExcitation ? 1.0 : 0.0;
+        in_excitation_[m].v(3 + i) = pass.field[m][i] == TangentForcing::kExcitation ? 1.0 : 0.0;
     }
     muscle_rates(pass.muscles, {in_excitation_, in_activation_, in_fiber_, in_length_, in_speed_},
                  {out_activation_, out_velocity_, out_force_});
@@ -183,7 +181,7 @@ void SystemLinearization::evaluate_muscles(const double* x, const SystemInputs& 
           slots.fiber_velocity[kField + TangentForcing::kExcitation] = slots.fiber_velocity[kActivation];
       }
       for (std::size_t i = 0; i < 3; ++i) {
-        if (pass.field[m][i] != kNone) take(kField + pass.field[m][i], static_cast<Eigen::Index>(3 + i));
+        if (pass.field[m][i] != kNone) take(kField + pass.field[m][i], 3 + i);
       }
     }
   }
@@ -197,10 +195,10 @@ bool SystemLinearization::evaluate_skeleton(const SystemInputs& inputs, double* 
   Dynamics<double>& dynamics = reduced_.dynamics();
   const Mechanism& mechanism = system_->mechanism();
   for (Eigen::Index c = 0; c < tau_.size(); ++c)
-    tau_(c) = inputs.coordinate_force.empty() ? 0.0 : inputs.coordinate_force[at(c)];
+    tau_(c) = inputs.coordinate_force.empty() ? 0.0 : inputs.coordinate_force[c];
   const auto pairs = system_->pairs();
   for (std::size_t p = 0; p < pairs.size(); ++p)
-    tau_(pairs[p].coordinate) -= force_[at(pairs[p].muscle)] * paths_->gradient()[p];
+    tau_(pairs[p].coordinate) -= force_[pairs[p].muscle] * paths_->gradient()[p];
   add_coordinate_forces<double>(system_->model(), s.q.data(), s.qdot.data(), tau_.data());
   if (!system_->passive().empty())
     system_->passive().add(mechanism, dynamics.kinematics(), s.q.data(), s.qdot.data(), passive_, tau_.data());
@@ -260,7 +258,7 @@ void SystemLinearization::differentiate_residual() {
   r_zd_.setZero();
   const auto n = static_cast<Eigen::Index>(free_);
   for (Eigen::Index m = 0; m < arm_.rows(); ++m) {
-    const MuscleSlots& slots = slots_[at(m)];
+    const MuscleSlots& slots = slots_[m];
     for (Eigen::Index k = 0; k < n; ++k) {
       velocity_z_(m, k) = slots.fiber_velocity[kPath] * arm_(m, k);
       force_z_(m, k) = slots.force[kPath] * arm_(m, k) + slots.force[kSpeed] * speed_z_(m, k);
@@ -277,14 +275,14 @@ void SystemLinearization::differentiate_residual() {
   for (std::size_t p = 0; p < pairs.size(); ++p) {
     const int i = reduction.free_root(pairs[p].coordinate);
     if (i < 0) continue;
-    const double factor = force_[at(pairs[p].muscle)] * s.slope(pairs[p].coordinate);
-    for (Eigen::Index k = 0; k < n; ++k) r_z_(i, k) -= factor * paths_->curvature()[p * free_ + at(k)];
+    const double factor = force_[pairs[p].muscle] * s.slope(pairs[p].coordinate);
+    for (Eigen::Index k = 0; k < n; ++k) r_z_(i, k) -= factor * paths_->curvature()[p * free_ + k];
   }
   const auto add = [&](int c, const auto& force) {
     const int i = reduction.free_root(c);
     if (i < 0) return;
     const PathJet tau = force(PathJet(s.q(c), 0), PathJet(s.qdot(c), 1));
-    const double zdot = s.qdot(reduction.free()[at(i)]);
+    const double zdot = s.qdot(reduction.free()[i]);
     const double speed_by_value = jets_ ? unit_speed_.bias(c) * zdot : 0.0;
     r_z_(i, i) += s.slope(c) * (tau.v(0) * s.slope(c) + tau.v(1) * speed_by_value);
     r_zd_(i, i) += s.slope(c) * tau.v(1) * s.slope(c);
@@ -316,14 +314,13 @@ void SystemLinearization::differentiate_skeleton_by_jets() {
     }
     for (std::size_t j = 0; j < count; ++j) {
       const std::size_t k = first + j;
-      (k < free_ ? jets.z[k] : jets.zdot[k - free_]).v(static_cast<Eigen::Index>(j)) = 1.0;
+      (k < free_ ? jets.z[k] : jets.zdot[k - free_]).v(j) = 1.0;
     }
     expand(reduction, jets.z.data(), jets.zdot.data(), jets.driven.data(), jets.state);
     for (std::size_t c = 0; c < jets.qddot.size(); ++c) {
-      const auto index = static_cast<Eigen::Index>(c);
       const int i = reduction.free_root(static_cast<int>(c));
-      jets.qddot[c] = jets.state.bias(index);
-      if (i >= 0) jets.qddot[c] += jets.state.slope(index) * acceleration_(i);
+      jets.qddot[c] = jets.state.bias(c);
+      if (i >= 0) jets.qddot[c] += jets.state.slope(c) * acceleration_(i);
     }
     jets.dynamics.set_state(jets.state.q.data(), jets.state.qdot.data());
     jets.dynamics.inverse_dynamics(jets.qddot.data(), nullptr, jets.tau.data());
@@ -335,15 +332,14 @@ void SystemLinearization::differentiate_skeleton_by_jets() {
         jets.tau[c] -= jets.passive_tau[c] - SimulationJet(jets.passive_tau[c].a);  // its value is in tau_
     }
     for (std::size_t c = 0; c < jets.tau.size(); ++c) {
-      const auto index = static_cast<Eigen::Index>(c);
       const int i = reduction.free_root(static_cast<int>(c));
       if (i < 0) continue;
       // With what the coordinate's force leaves, which couplers carry: their slopes change too.
-      const SimulationJet left = jets.state.slope(index) * (SimulationJet(tau_(index)) - jets.tau[c]);
+      const SimulationJet left = jets.state.slope(c) * (SimulationJet(tau_(c)) - jets.tau[c]);
       for (std::size_t j = 0; j < count; ++j) {
         const std::size_t k = first + j;
         const auto column = static_cast<Eigen::Index>(k % free_);
-        (k < free_ ? r_z_ : r_zd_)(i, column) += left.v(static_cast<Eigen::Index>(j));
+        (k < free_ ? r_z_ : r_zd_)(i, column) += left.v(j);
       }
     }
   }

@@ -56,9 +56,7 @@ void SystemLinearization::fiber_length_row(std::size_t muscle, const double* S, 
   const double length = std::hypot(along, height);
   if (!(length > 0.0)) return;
   const double by_along = along / length, by_height = height / length;
-  for (std::size_t k = 0; k < free_; ++k)
-    add_scaled_row(by_along * arm_(static_cast<Eigen::Index>(muscle), static_cast<Eigen::Index>(k)), S + k * columns_,
-                   columns_, row);
+  for (std::size_t k = 0; k < free_; ++k) add_scaled_row(by_along * arm_(muscle, k), S + k * columns_, columns_, row);
   for (const TangentForcing& f : forcings_) {
     if (f.muscle != muscle) continue;
     if (f.field == 1) row[f.column] += f.weight * by_height * sine;
@@ -72,7 +70,7 @@ double SystemLinearization::muscle_moment(int coordinate) const {
   double moment = 0.0;
   const auto pairs = system_->pairs();
   for (std::size_t p = 0; p < pairs.size(); ++p)
-    moment -= force_[at(pairs[p].muscle)] * paths_->gradient()[p] *
+    moment -= force_[pairs[p].muscle] * paths_->gradient()[p] *
               system_->reduction().share_in(pairs[p].coordinate, coordinate, reduced_.state().slope.data());
   return moment;
 }
@@ -84,7 +82,7 @@ void SystemLinearization::muscle_moment_row(int coordinate, const double* S, dou
     const int c = pairs[p].coordinate;
     const double share = system_->reduction().share_in(c, coordinate, reduced_.state().slope.data());
     if (share == 0.0) continue;
-    const double force = force_[at(pairs[p].muscle)];
+    const double force = force_[pairs[p].muscle];
     add_force_tangent(at(pairs[p].muscle), S, -paths_->gradient()[p] * share, row);
     for (std::size_t k = 0; k < free_; ++k)
       add_scaled_row(-force * share * paths_->curvature()[p * free_ + k], S + k * columns_, columns_, row);

@@ -20,7 +20,6 @@ void SystemLinearization::tangent_rate(double step, double* S, double* rate) con
   const auto row = [&](std::size_t state) { return S + state * p; };
   // Muscles first: the skeleton sees the fibres at the end of the stage.
   for (std::size_t m = 0; m < force_.size(); ++m) {
-    const auto index = static_cast<Eigen::Index>(m);
     const MuscleSlots& slots = slots_[m];
     const int a = layout.activation[m], l = layout.fiber_length[m];
     if (live(m)) {
@@ -30,14 +29,14 @@ void SystemLinearization::tangent_rate(double step, double* S, double* rate) con
     if (l < 0) continue;
     double* const to = rate + at(l) * p;
     for (std::size_t j = 0; j < p; ++j) to[j] = slots.fiber_velocity[kFiber] * row(at(l))[j];
-    for (std::size_t k = 0; k < free_; ++k) add_row(velocity_z_(index, static_cast<Eigen::Index>(k)), row(k), p, to);
+    for (std::size_t k = 0; k < free_; ++k) add_row(velocity_z_(m, k), row(k), p, to);
     if (live(m)) add_row(slots.fiber_velocity[kActivation], row(at(a)), p, to);
   }
   for (const TangentForcing& f : forcings_) {
     const std::size_t slot = kField + f.field;
     const int a = layout.activation[f.muscle], l = layout.fiber_length[f.muscle];
-    if (a >= 0 && live(f.muscle)) rate[at(a) * p + f.column] += f.weight * slots_[f.muscle].activation_rate[slot];
-    if (l >= 0) rate[at(l) * p + f.column] += f.weight * slots_[f.muscle].fiber_velocity[slot];
+    if (a >= 0 && live(f.muscle)) rate[a * p + f.column] += f.weight * slots_[f.muscle].activation_rate[slot];
+    if (l >= 0) rate[l * p + f.column] += f.weight * slots_[f.muscle].fiber_velocity[slot];
   }
   // S_l = base + step (l'_l S_l + what does not depend on it).
   for (std::size_t m = 0; m < force_.size() && step > 0.0; ++m) {
@@ -54,22 +53,19 @@ void SystemLinearization::tangent_rate(double step, double* S, double* rate) con
   double* const accelerations = rate + free_ * p;
   std::fill(accelerations, accelerations + free_ * p, 0.0);
   for (std::size_t i = 0; i < free_; ++i) {
-    const auto a = static_cast<Eigen::Index>(i);
     double* const to = accelerations + i * p;
     for (std::size_t k = 0; k < free_; ++k) {
-      const auto b = static_cast<Eigen::Index>(k);
-      add_row(acc_z_(a, b), row(k), p, to);
-      add_row(acc_zd_(a, b), row(free_ + k), p, to);
+      add_row(acc_z_(i, k), row(k), p, to);
+      add_row(acc_zd_(i, k), row(free_ + k), p, to);
     }
     for (std::size_t m = 0; m < force_.size(); ++m) {
-      const double factor = acc_force_(a, static_cast<Eigen::Index>(m));
+      const double factor = acc_force_(i, m);
       if (live(m)) add_row(factor * slots_[m].force[kActivation], row(at(layout.activation[m])), p, to);
       const int l = layout.fiber_length[m];
       if (l >= 0) add_row(factor * slots_[m].force[kFiber], row(at(l)), p, to);
     }
     for (const TangentForcing& f : forcings_)
-      to[f.column] +=
-          acc_force_(a, static_cast<Eigen::Index>(f.muscle)) * f.weight * slots_[f.muscle].force[kField + f.field];
+      to[f.column] += acc_force_(i, f.muscle) * f.weight * slots_[f.muscle].force[kField + f.field];
   }
 }
 
@@ -94,7 +90,7 @@ void SystemLinearization::start_muscles(const double* start, bool follows_excita
   };
   for (const TangentForcing& f : forcings_) {
     const int a = layout.activation[f.muscle];
-    if (starts_with(f) && a >= 0) S[at(a) * p + f.column] += f.weight;
+    if (starts_with(f) && a >= 0) S[a * p + f.column] += f.weight;
   }
   for (std::size_t q = 0; q < passes_.size(); ++q) {
     const Pass& pass = passes_[q];
@@ -107,8 +103,7 @@ void SystemLinearization::start_muscles(const double* start, bool follows_excita
       if (q == 0) {
         x[l] = fiber.a;
         std::fill(to, to + p, 0.0);
-        for (std::size_t k = 0; k < free_; ++k)
-          add_row(fiber.v(2) * arm_(static_cast<Eigen::Index>(m), static_cast<Eigen::Index>(k)), S + k * p, p, to);
+        for (std::size_t k = 0; k < free_; ++k) add_row(fiber.v(2) * arm_(m, k), S + k * p, p, to);
         for (const TangentForcing& f : forcings_) {
           if (f.muscle == m && starts_with(f)) to[f.column] += fiber.v(0) * f.weight;
         }
@@ -116,7 +111,7 @@ void SystemLinearization::start_muscles(const double* start, bool follows_excita
       for (const TangentForcing& f : forcings_) {
         if (f.muscle != m || f.field == TangentForcing::kExcitation) continue;
         for (std::size_t i = 0; i < 3; ++i) {
-          if (pass.field[m][i] == f.field) to[f.column] += f.weight * fiber.v(static_cast<Eigen::Index>(3 + i));
+          if (pass.field[m][i] == f.field) to[f.column] += f.weight * fiber.v(3 + i);
         }
       }
     }

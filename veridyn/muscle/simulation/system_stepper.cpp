@@ -1,7 +1,5 @@
 #include "veridyn/muscle/simulation/system_stepper.hpp"
 
-#include "veridyn/core/index.hpp"
-
 namespace veridyn::muscle {
 namespace {
 
@@ -19,7 +17,7 @@ Method method_for(const StateLayout& layout, double tolerance, std::size_t tange
   bool any = false;
   for (const int l : layout.fiber_length) {
     if (l < 0) continue;
-    stiff[at(l)] = 1;
+    stiff[l] = 1;
     any = true;
   }
   if (any && tolerance >= kFinestImplicit) return numerics::AdditiveRungeKutta(std::move(stiff), tangents);
@@ -36,7 +34,7 @@ SystemStepper::SystemStepper(const MusculoskeletalSystem& system, const numerics
   if (!std::holds_alternative<numerics::AdditiveRungeKutta>(method_)) return;
   control_.tolerance *= kPessimism;
   for (const int a : system.layout().activation) {
-    if (a >= 0) scales_[at(a)] /= kPessimism;
+    if (a >= 0) scales_[a] /= kPessimism;
   }
 }
 

@@ -71,7 +71,7 @@ std::vector<WrapBandVisit> wrap_band_visits(const MusculoskeletalSystem& system,
   ArmsAlongMotion arms(system);
   std::vector<int> visit_of(system.muscles().size(), -1);
   std::vector<double> before, now;
-  const auto time_of = [&](Eigen::Index row) { return at(row) < time.size() ? time[at(row)] : 0.0; };
+  const auto time_of = [&](Eigen::Index row) { return at(row) < time.size() ? time[row] : 0.0; };
   for (Eigen::Index i = 0; i < q.rows(); ++i) {
     const Eigen::VectorXd pose = q.row(i).transpose();
     const PathWorkspace<double>& workspace = arms.at_pose(pose);
@@ -83,7 +83,7 @@ std::vector<WrapBandVisit> wrap_band_visits(const MusculoskeletalSystem& system,
         visit_of[m] = static_cast<int>(visits.size());
         visits.push_back({static_cast<int>(m), kind, 0, time_of(i), time_of(i), 0.0, pose});
       }
-      WrapBandVisit& visit = visits[at(visit_of[m])];
+      WrapBandVisit& visit = visits[visit_of[m]];
       visit.kind = std::max(visit.kind, kind);
       ++visit.poses;
       visit.last = time_of(i);
@@ -104,7 +104,7 @@ std::vector<WrapBandVisit> wrap_band_visits(const MusculoskeletalSystem& system,
 
 std::string wrap_band_text(const MusculoskeletalSystem& system, const WrapBandVisit& visit) {
   const std::string pose = pose_text(system.model(), system.paths(), visit.muscle, visit.pose);
-  const std::string& name = system.model().muscles[at(visit.muscle)].name();
+  const std::string& name = system.model().muscles[visit.muscle].name();
   if (visit.kind == WrapBandKind::kSideChange)
     return fmt::format(
         "muscle '{}' changes the side of a wrap object at {:.4g} s ({}): its moment arm jumps by {:.3g} mm", name,

@@ -76,8 +76,8 @@ ElbowTaskOptions resolved(const Model& model, ElbowTaskOptions options) {
   if (options.elbow == options.shoulder)
     throw InputError("shoulder", fmt::format("is '{}' like elbow", options.shoulder));
   if (options.load_body.empty()) {
-    const Coordinate& elbow = model.coordinates[at(model.coordinate(options.elbow))];
-    options.load_body = model.bodies[at(model.joints[at(elbow.joint)].child)].name;
+    const Coordinate& elbow = model.coordinates[model.coordinate(options.elbow)];
+    options.load_body = model.bodies[model.joints[elbow.joint].child].name;
   }
   const int body = model.body(options.load_body);
   if (body <= 0) {
@@ -86,14 +86,14 @@ ElbowTaskOptions resolved(const Model& model, ElbowTaskOptions options) {
     throw InputError("load_body", fmt::format("'{}' is no body of model '{}' that could carry a load{}",
                                               options.load_body, model.name, suggestion(options.load_body, names)));
   }
-  if (!options.load_location) options.load_location = 2.0 * model.bodies[at(body)].mass_center;
+  if (!options.load_location) options.load_location = 2.0 * model.bodies[body].mass_center;
   return options;
 }
 
 std::string obstacle(const Model& model, const ElbowTaskOptions& options, int number) {
   const ElbowTask task = elbow_task(number);
-  const Coordinate& elbow = model.coordinates[at(model.coordinate(options.elbow))];
-  const Coordinate& shoulder = model.coordinates[at(model.coordinate(options.shoulder))];
+  const Coordinate& elbow = model.coordinates[model.coordinate(options.elbow)];
+  const Coordinate& shoulder = model.coordinates[model.coordinate(options.shoulder)];
   // Ranges of files are rounded: 2.268928 is 130 deg.
   const auto beyond = [](const Coordinate& c, double value) { return value < c.low - 1e-5 || value > c.high + 1e-5; };
   if (beyond(shoulder, task.shoulder)) return shoulder.outside_range(task.shoulder);
@@ -112,7 +112,7 @@ Task make_elbow_task(const Model& model, const ElbowTaskOptions& options, int nu
   task.control = options.control;
   const int elbow = model.coordinate(options.elbow), shoulder = model.coordinate(options.shoulder);
   const auto within = [&](int c, double value) {
-    return std::clamp(value, model.coordinates[at(c)].low, model.coordinates[at(c)].high);
+    return std::clamp(value, model.coordinates[c].low, model.coordinates[c].high);
   };
   task.held.push_back({shoulder, within(shoulder, movement.shoulder)});
   if (options.load > 0.0) task.loads.push_back({options.load_body, options.load, *options.load_location});
@@ -123,15 +123,15 @@ Task make_elbow_task(const Model& model, const ElbowTaskOptions& options, int nu
   for (std::size_t c = 0; c < model.coordinates.size(); ++c) {
     const bool coupled = std::any_of(model.couplers.begin(), model.couplers.end(),
                                      [&](const CoordinateCoupler& k) { return at(k.dependent) == c; });
-    if (!coupled) task.desired.coordinate[c] = resting_spline(rest(signed_index(c)));
+    if (!coupled) task.desired.coordinate[c] = resting_spline(rest(c));
   }
-  task.desired.coordinate[at(shoulder)] = resting_spline(task.held.front().value);
+  task.desired.coordinate[shoulder] = resting_spline(task.held.front().value);
   const Ramp ramp{.start = options.start,
                   .duration = options.duration,
                   .from = within(elbow, movement.from),
                   .to = within(elbow, movement.to),
                   .shape = RampShape::kHalfSine};
-  task.desired.coordinate[at(elbow)] = ramp_spline({&ramp, 1});
+  task.desired.coordinate[elbow] = ramp_spline({&ramp, 1});
   return task;
 }
 

@@ -18,7 +18,7 @@ namespace {
 std::shared_ptr<const MusculoskeletalSystem> system_of_task(const MusculoskeletalSystem& subject, const Task& task) {
   SystemChanges changes{.loads = task.loads};
   for (const HeldCoordinate& held : task.held) {
-    const Coordinate& coordinate = subject.model().coordinates[at(held.coordinate)];
+    const Coordinate& coordinate = subject.model().coordinates[held.coordinate];
     if (!coordinate.in_range(held.value)) throw InputError(task.name, coordinate.outside_range(held.value));
     changes.locked.push_back(coordinate.name);
   }

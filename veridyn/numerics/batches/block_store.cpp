@@ -157,7 +157,7 @@ bool BlockStore::read(Round& round, std::size_t block, bool warn) {
     case BlockState::kRead:
       break;
   }
-  std::copy(b.values.begin(), b.values.end(), round.values.begin() + static_cast<std::ptrdiff_t>(b.first));
+  std::copy(b.values.begin(), b.values.end(), round.values.begin() + b.first);
   round.seconds[block] = b.seconds;
   round.there[block] = 1;
   return true;

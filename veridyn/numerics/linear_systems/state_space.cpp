@@ -54,8 +54,8 @@ StateSpace realise(TransferFunction t) {
   std::vector<double> a, b(n - (t.numerator.size() - 1), 0.0);
   for (const double c : t.denominator) a.push_back(c / lead);
   for (const double c : t.numerator) b.push_back(c / lead);
-  StateSpace s{Eigen::MatrixXd::Zero(signed_index(n), signed_index(n)), Eigen::MatrixXd::Zero(signed_index(n), 1),
-               Eigen::MatrixXd::Zero(1, signed_index(n)), Eigen::MatrixXd::Constant(1, 1, b.front())};
+  StateSpace s{Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, 1), Eigen::MatrixXd::Zero(1, n),
+               Eigen::MatrixXd::Constant(1, 1, b.front())};
   if (n == 0) return s;
   // Of the poles that are not zero.
   std::size_t last = n;

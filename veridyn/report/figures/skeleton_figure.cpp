@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/dynamics/skeleton.hpp"
 
 namespace veridyn::report {
@@ -126,9 +125,9 @@ std::vector<XYPlot> skeleton_figure(const MuscleStudy& study, const MuscleResult
   std::vector<XYPlot> plots;
   for (const Eigen::Index row : rows_on_the_way(rows, 2)) {
     poses.set(row);
-    XYPlot plot{.title = fmt::format("Pose at {:.4g} s", result.trajectory.time[at(row)]),
-                .x = {.label = kAxisNames[at(view.across)], .unit = "m"},
-                .y = {.label = kAxisNames[at(view.up)], .unit = "m"},
+    XYPlot plot{.title = fmt::format("Pose at {:.4g} s", result.trajectory.time[row]),
+                .x = {.label = kAxisNames[view.across], .unit = "m"},
+                .y = {.label = kAxisNames[view.up], .unit = "m"},
                 .equal_scale = true,
                 .height = 460};
     plot.series.push_back(ghosts);

@@ -90,7 +90,7 @@ Table parameters_table(const CoefficientResult& result) {
   for (std::size_t j = 0; j < result.chosen->parameters.size(); ++j) {
     const estimation::Parameter& p = result.chosen->parameters[j];
     const Eigen::VectorXd& between = result.scatter->between_sigma;
-    const double scatter = between.size() > 0 ? between(static_cast<Eigen::Index>(j)) : kNaN;
+    const double scatter = between.size() > 0 ? between(j) : kNaN;
     table.rows.push_back({.cells = {text_cell(p.name), text_cell("all"), number_cell(p.value), number_cell(p.sigma),
                                     number_cell(scatter)}});
     for (const FlightEstimate& flight : result.flight_estimates) {

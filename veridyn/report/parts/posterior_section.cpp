@@ -42,18 +42,18 @@ Table posterior_table(const PosteriorSample& s, std::span<const Parameter> param
 /// Density of the draws as steps, and that of a normal distribution of the error bar.
 XYPlot histogram(const PosteriorSample& s, std::size_t i, const Parameter& estimate) {
   const PosteriorParameter& p = s.parameters[i];
-  const auto draws = s.ensemble.draws.col(signed_index(i));
+  const auto draws = s.ensemble.draws.col(i);
   const double low = draws.minCoeff(), width = (draws.maxCoeff() - low) / kBins;
   XYPlot plot{
       .title = p.name, .x = {.label = p.name, .unit = unit_of(p.unit)}, .y = {.label = "density"}, .height = 150};
   if (!(width > 0.0)) return plot;
   std::vector<double> count(kBins, 0.0);
-  for (const double x : draws) count[at(std::min(kBins - 1, static_cast<int>((x - low) / width)))] += 1.0;
+  for (const double x : draws) count[std::min(kBins - 1, static_cast<int>((x - low) / width))] += 1.0;
   XYSeries steps{.name = "draws", .style = Style::kLine};
   for (int b = 0; b < kBins; ++b) {
     for (const int end : {b, b + 1}) {
       steps.x.push_back(low + end * width);
-      steps.y.push_back(count[at(b)] / (static_cast<double>(draws.size()) * width));
+      steps.y.push_back(count[b] / (static_cast<double>(draws.size()) * width));
     }
   }
   plot.series.push_back(std::move(steps));
@@ -78,9 +78,9 @@ XYPlot closest_pair(const PosteriorSample& s) {
   Eigen::Index first = 0, second = 1;
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = i + 1; j < n; ++j) {
-      const Eigen::ArrayXd a = s.ensemble.draws.col(i).array() - s.parameters[at(i)].mean;
-      const Eigen::ArrayXd b = s.ensemble.draws.col(j).array() - s.parameters[at(j)].mean;
-      const double correlation = (a * b).mean() / (s.parameters[at(i)].sd * s.parameters[at(j)].sd);
+      const Eigen::ArrayXd a = s.ensemble.draws.col(i).array() - s.parameters[i].mean;
+      const Eigen::ArrayXd b = s.ensemble.draws.col(j).array() - s.parameters[j].mean;
+      const double correlation = (a * b).mean() / (s.parameters[i].sd * s.parameters[j].sd);
       if (!(std::abs(correlation) > std::abs(largest))) continue;
       largest = correlation;
       first = i;
@@ -88,7 +88,7 @@ XYPlot closest_pair(const PosteriorSample& s) {
     }
   }
   plot.caption = fmt::format("Correlation {:.2f}.", largest);
-  const PosteriorParameter &x = s.parameters[at(first)], &y = s.parameters[at(second)];
+  const PosteriorParameter &x = s.parameters[first], &y = s.parameters[second];
   plot.x = {.label = x.name, .unit = unit_of(x.unit)};
   plot.y = {.label = y.name, .unit = unit_of(y.unit)};
   XYSeries points{.name = "draws", .width = 2.0, .opacity = 0.4};

@@ -113,7 +113,7 @@ std::optional<XYPlot> valley_plot(const ProfileResult& result, std::span<const P
   double furthest = 0.0;
   for (const ParameterProfile& p : result.profiles) {
     for (Eigen::Index j = 0; j < signed_index(parameters.size()); ++j) {
-      const double sigma = parameters[at(j)].sigma;
+      const double sigma = parameters[j].sigma;
       if (at(j) == p.parameter || !(sigma > 0.0 && std::isfinite(sigma))) continue;
       double least = kInfinity, most = -kInfinity;
       for (const ProfilePoint& q : p.points) {
@@ -129,7 +129,7 @@ std::optional<XYPlot> valley_plot(const ProfileResult& result, std::span<const P
     }
   }
   if (worst == nullptr) return std::nullopt;
-  const Parameter& along = parameters[at(other)];
+  const Parameter& along = parameters[other];
   XYPlot plot{.title = "The valley",
               .caption = fmt::format("Where {} goes as {} is moved: no other pair makes up for each other as much.",
                                      along.name, worst->name),

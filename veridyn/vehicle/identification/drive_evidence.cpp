@@ -311,8 +311,7 @@ recording::DelayReport steering_delay(const DriveSignals& signals, std::span<con
   std::vector<bool> inside(effect.size(), false);
   for (const TimeSpan& span : spans) {
     const auto [first, last] = signals.indices(span);
-    std::fill(inside.begin() + static_cast<std::ptrdiff_t>(first), inside.begin() + static_cast<std::ptrdiff_t>(last),
-              true);
+    std::fill(inside.begin() + first, inside.begin() + last, true);
   }
   for (std::size_t k = 0; k < effect.size(); ++k)
     if (!inside[k]) effect[k] = kNaN;

@@ -180,7 +180,7 @@ DriveLog read_drive_log(const StudyTable& data) {
     JoinedRuns all = joined(runs);
     recording = std::move(all.recording);
     log.runs = std::move(all.spans);
-    log.holdout_runs.assign(log.runs.begin() + static_cast<std::ptrdiff_t>(for_identification), log.runs.end());
+    log.holdout_runs.assign(log.runs.begin() + for_identification, log.runs.end());
     log.inputs = paths;
   } else {
     recording = recording::read_study_data(data);

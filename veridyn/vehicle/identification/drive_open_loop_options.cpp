@@ -21,7 +21,7 @@ DriveOpenLoopOptions DriveOpenLoopOptions::read(const StudyTable& table) {
     if (found == names.end())
       table.fail("open_loop_offsets",
                  fmt::format("'{}' is no bias of steering or sensors{}", name, suggestion(name, names, names.size())));
-    options.offsets->push_back(kDriveBiases[static_cast<std::size_t>(found - names.begin())]);
+    options.offsets->push_back(kDriveBiases[found - names.begin()]);
   }
   return options;
 }

@@ -23,8 +23,7 @@ constexpr double kInitialRoll = 0.01, kInitialRollRate = 0.05, kInitialSlip = 0.
 DriveParametricModel::Segment DriveParametricModel::make_segment(std::size_t begin, std::size_t end) const {
   const double C_f = options_.start[DriveUnknown::kCf], C_r = options_.start[DriveUnknown::kCr];
   const double I_z = options_.start[DriveUnknown::kIz];
-  const double slowest = *std::min_element(speed_.begin() + static_cast<std::ptrdiff_t>(begin),
-                                           speed_.begin() + static_cast<std::ptrdiff_t>(end));
+  const double slowest = *std::min_element(speed_.begin() + begin, speed_.begin() + end);
   const double rate =
       2.0 / slowest * ((C_f + C_r) / start_.mass + (start_.a * start_.a * C_f + start_.b * start_.b * C_r) / I_z);
   const double step = grid_.step;

@@ -152,7 +152,7 @@ class RegressionRows {
   [[nodiscard]] Eigen::MatrixXd covariance(const Columns& columns) const {
     numerics::FilteredNoise noise(kColumns, variance_, kernel_.smooth.taps.size());
     for (Eigen::Index j = 0; j < kColumns; ++j)
-      for (const NoiseTerm& term : columns[at(j)]) noise.add(j, term.source, term.coefficient, *term.kernel);
+      for (const NoiseTerm& term : columns[j]) noise.add(j, term.source, term.coefficient, *term.kernel);
     return noise.covariance();
   }
 
@@ -220,8 +220,8 @@ class RegressionRows {
     data.regressand = D.col(kRegressand);
     data.segment = segment_;
     for (const Eigen::Index i : used) {
-      data.parameter_names.emplace_back(described.name[at(i)]);
-      data.parameter_units.emplace_back(described.unit[at(i)]);
+      data.parameter_names.emplace_back(described.name[i]);
+      data.parameter_units.emplace_back(described.unit[i]);
     }
     data.regressand_name = described.name[kRegressand];
     used.push_back(kRegressand);

@@ -68,7 +68,7 @@ PredictedStretch predicted_outputs(const DriveSignals& signals, const DriveParam
   const auto measured = [&](DriveSignal which) -> std::vector<double> {
     const std::vector<double>& all = signals[which].value;
     if (all.empty()) return {};
-    const auto from = all.begin() + static_cast<std::ptrdiff_t>(begin);
+    const auto from = all.begin() + begin;
     return {from, from + static_cast<std::ptrdiff_t>(n)};
   };
   const bool accel = signals[DriveSignal::kAccelY].available();
@@ -82,10 +82,9 @@ PredictedStretch predicted_outputs(const DriveSignals& signals, const DriveParam
   drive.lateral_velocity = measured(DriveSignal::kLateralVelocity);
   for (std::size_t k = 0; k < n; ++k) {
     drive.time.push_back(signals.grid.at(begin + k));
-    const auto row = static_cast<Eigen::Index>(k);
-    drive.yaw_rate_predicted.push_back(y(row, 0));
-    if (accel) drive.accel_y_predicted.push_back(y(row, 1));
-    if (lateral) drive.lateral_velocity_predicted.push_back(y(row, accel ? 2 : 1));
+    drive.yaw_rate_predicted.push_back(y(k, 0));
+    if (accel) drive.accel_y_predicted.push_back(y(k, 1));
+    if (lateral) drive.lateral_velocity_predicted.push_back(y(k, accel ? 2 : 1));
   }
   drive.x = measured(DriveSignal::kX);
   drive.y = measured(DriveSignal::kY);
@@ -146,7 +145,7 @@ Eigen::MatrixXd output_sigmas(const DriveParametricModel& model, std::size_t seg
   std::iota(active.begin(), active.end(), Eigen::Index{0});
   estimation::ModelResponse response;
   if (!model.respond(segment, full, active, response)) return {};
-  Eigen::MatrixXd sigma(model.samples(segment), signed_index(model.outputs().size()));
+  Eigen::MatrixXd sigma(model.samples(segment), model.outputs().size());
   for (Eigen::Index k = 0; k < sigma.rows(); ++k) {
     for (Eigen::Index j = 0; j < sigma.cols(); ++j) {
       const Eigen::VectorXd g = response.sensitivity.row(k * sigma.cols() + j).transpose();
@@ -200,7 +199,7 @@ std::vector<estimation::PredictedQuantity> roll_quantities_of(const DriveParamet
     if (name != kDriveSignalNames[DriveSignal::kRoll] && name != kDriveSignalNames[DriveSignal::kRollRate]) continue;
     Pairs pairs;
     for (std::size_t s = 0; s < model.segments(); ++s) {
-      const Eigen::VectorXd seen = measured[s].col(signed_index(j)), said = predicted.predicted[s].col(signed_index(j));
+      const Eigen::VectorXd seen = measured[s].col(j), said = predicted.predicted[s].col(j);
       pairs.add({seen.begin(), seen.end()}, {said.begin(), said.end()}, static_cast<int>(s));
     }
     if (!pairs.measured.empty()) quantities.push_back(predicted_quantity(name.c_str(), unit.c_str(), pairs));
@@ -232,7 +231,7 @@ DriveValidation predict_drive(const DriveSignals& signals, std::span<const TimeS
   DriveValidation out;
   DriveModelOptions fixed = options;
   fixed.free.fill(false);
-  for (std::size_t i = 0; i < kDriveUnknowns; ++i) fixed.start[i] = theta.value(static_cast<Eigen::Index>(i));
+  for (std::size_t i = 0; i < kDriveUnknowns; ++i) fixed.start[i] = theta.value(i);
   VehicleParameters<double> p = vehicle;
   p.C_f = theta.value(place_of(DriveUnknown::kCf));
   p.C_r = theta.value(place_of(DriveUnknown::kCr));
@@ -252,7 +251,7 @@ DriveValidation predict_drive(const DriveSignals& signals, std::span<const TimeS
   for (std::size_t s = 0; s < model.segments() && !progress.interrupted(); ++s) {
     const Eigen::VectorXd full = with_initial_state(theta.value, initial, s);
     PredictedStretch drive = with_path(predicted_outputs(signals, model, s, initial.predicted[s]), signals, theta.value,
-                                       full(static_cast<Eigen::Index>(kDriveUnknowns)));
+                                       full(kDriveUnknowns));
     const Eigen::MatrixXd sigma =
         theta.covariance.size() > 0 ? output_sigmas(model, s, full, theta.covariance) : Eigen::MatrixXd();
     for (Eigen::Index k = 0; k < sigma.rows(); ++k) {

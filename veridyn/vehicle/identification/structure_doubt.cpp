@@ -38,12 +38,12 @@ VehicleEstimate with_doubt(VehicleEstimate estimate, std::span<const StructureDo
   const Eigen::VectorXd before = estimate.covariance.diagonal();
   for (const StructureDoubt& doubt : doubts) {
     Eigen::VectorXd difference(n);
-    for (Eigen::Index i = 0; i < n; ++i) difference(i) = difference_of(doubt, estimate.parameters[at(i)].name);
+    for (Eigen::Index i = 0; i < n; ++i) difference(i) = difference_of(doubt, estimate.parameters[i].name);
     estimate.covariance += doubt.probability * difference * difference.transpose();
   }
   for (Eigen::Index i = 0; i < n; ++i) {
     if (!(before(i) > 0.0) || !std::isfinite(before(i))) continue;
-    estimation::widen(estimate.parameters[at(i)], estimate.covariance(i, i) / before(i), estimate.degrees_of_freedom,
+    estimation::widen(estimate.parameters[i], estimate.covariance(i, i) / before(i), estimate.degrees_of_freedom,
                       significance);
   }
   return estimate;

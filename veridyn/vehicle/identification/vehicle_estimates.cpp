@@ -172,9 +172,7 @@ struct Places {
   Eigen::Index understeer = 0;        // row of the understeer gradient
   [[nodiscard]] Eigen::Index rows() const { return static_cast<Eigen::Index>(unknown.size()) + 1; }
   /// Row i's unknown; not for the understeer gradient's row.
-  [[nodiscard]] Eigen::Index at(Eigen::Index row) const {
-    return unknown[static_cast<std::size_t>(row < understeer ? row : row - 1)];
-  }
+  [[nodiscard]] Eigen::Index at(Eigen::Index row) const { return unknown[row < understeer ? row : row - 1]; }
 };
 
 Places places_of(const DriveModelOptions& options) {
@@ -192,7 +190,7 @@ Eigen::MatrixXd output_error_covariance(const estimation::OutputErrorEstimate& r
                                         const VehicleParameters<double>& p, const Places& places) {
   const Eigen::Index n = places.rows(), understeer = places.understeer;
   const Eigen::Vector3d g = understeer_slope(p);
-  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(kDriveUnknowns));
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(n, kDriveUnknowns);
   for (Eigen::Index i = 0; i < n; ++i) {
     if (i == understeer) {
       J(i, 0) = g(0);
@@ -224,12 +222,11 @@ Eigen::MatrixXd given_covariance(const VehicleProblem& problem, const GeometrySl
   std::array<Eigen::Index, 4> row{-1, -1, -1, understeer};
   for (std::size_t i = 0; i < places.unknown.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    if (places.unknown[i] < 3) row[static_cast<std::size_t>(places.unknown[i])] = at < understeer ? at : at + 1;
+    if (places.unknown[i] < 3) row[places.unknown[i]] = at < understeer ? at : at + 1;
   }
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t j = 0; j < 4; ++j) {
-      if (row[i] >= 0 && row[j] >= 0)
-        P(row[i], row[j]) += extra(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+      if (row[i] >= 0 && row[j] >= 0) P(row[i], row[j]) += extra(i, j);
     }
   }
   return P;
@@ -259,7 +256,7 @@ VehicleEstimate estimate_of(const VehicleProblem& problem, const GeometrySlopes&
                                       result.degrees_of_freedom, o.significance));
       continue;
     }
-    const Parameter& given = result.parameters[static_cast<std::size_t>(places.at(i))];
+    const Parameter& given = result.parameters[places.at(i)];
     Parameter made =
         describe(given.name, given.unit, given.value, e.covariance(i, i), result.degrees_of_freedom, o.significance);
     made.sigma_white = given.sigma_white;
@@ -390,7 +387,7 @@ OutputErrorResult refined(OutputErrorResult estimate, const VehicleProblem& prob
 
 Eigen::VectorXd within_bounds(const DriveParametricModel& model, Eigen::VectorXd theta) {
   for (Eigen::Index i = 0; i < theta.size(); ++i) {
-    const estimation::ModelParameter& p = model.parameters()[at(i)];
+    const estimation::ModelParameter& p = model.parameters()[i];
     theta(i) = p.fixed ? p.start : std::clamp(theta(i), p.low, p.high);
   }
   return theta;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/judgement/agreement.hpp"
 #include "veridyn/vehicle/identification/axle_estimate.hpp"
 #include "veridyn/vehicle/identification/drive_evidence.hpp"
@@ -79,7 +78,7 @@ std::vector<Evidence> check_residuals(const VehicleProblem& problem, const Vehic
   for (const estimation::PredictedQuantity& q : findings.fit.quantities) {
     const auto signal = std::find(kDriveSignalNames.begin(), kDriveSignalNames.end(), q.name);
     if (signal == kDriveSignalNames.end() || q.name == "yaw") continue;
-    const double sigma = problem.signals.signals[at(signal - kDriveSignalNames.begin())].sigma;
+    const double sigma = problem.signals.signals[signal - kDriveSignalNames.begin()].sigma;
     ResidualFinding found = check_residual(q, sigma, findings.by_noise.find(q.name));
     if (found.unmodelled > unmodelled) {
       unmodelled = found.unmodelled;
@@ -175,8 +174,7 @@ std::optional<Evidence> check_methods(const VehicleProblem& problem, const AxleE
   for (std::size_t i = 0; i < names.size(); ++i) {
     const Parameter* p = output_error->estimate.find(names[i]);
     if (p == nullptr) return std::nullopt;
-    const auto row = static_cast<Eigen::Index>(i);
-    difference(row) = p->value - axle.value(row);
+    difference(i) = p->value - axle.value(i);
   }
   // Both come from the same data, so the sum of covariances is more than their difference has: a weak test, but one
   // without false alarms.

@@ -25,8 +25,8 @@ Eigen::VectorXd fit_drive_biases(const DriveSignals& signals, std::span<const Ti
   const DriveParametricModel model(signals, spans, vehicle, biases_only);
   const estimation::OutputErrorEstimate biases = estimation::output_error(model, model.measured(), {}, progress);
   if (biases.usable()) return biases.theta;
-  Eigen::VectorXd theta(static_cast<Eigen::Index>(kDriveUnknowns));
-  for (std::size_t i = 0; i < kDriveUnknowns; ++i) theta(static_cast<Eigen::Index>(i)) = model.parameters()[i].start;
+  Eigen::VectorXd theta(kDriveUnknowns);
+  for (std::size_t i = 0; i < kDriveUnknowns; ++i) theta(i) = model.parameters()[i].start;
   return theta;
 }
 
@@ -36,13 +36,12 @@ DriveTheta theta_of(const VehicleProblem& problem, const VehicleEstimate& estima
     return {output_error->theta,
             output_error->covariance.unaryExpr([](double c) { return std::isfinite(c) ? c : 0.0; })};
   }
-  const auto n = static_cast<Eigen::Index>(kDriveUnknowns);
   VehicleParameters<double> p = problem.start;
   p.C_f = estimate.find("C_f")->value;
   p.C_r = estimate.find("C_r")->value;
   p.I_z = estimate.find("I_z")->value;
   DriveTheta theta;
-  theta.covariance = Eigen::MatrixXd::Zero(n, n);
+  theta.covariance = Eigen::MatrixXd::Zero(kDriveUnknowns, kDriveUnknowns);
   const Eigen::MatrixXd axles = estimate.covariance.topLeftCorner(3, 3);
   if (axles.allFinite()) theta.covariance.topLeftCorner(3, 3) = axles;
   theta.value = fit_drive_biases(problem.signals, problem.segments.identification, p, problem.options.model, progress);

@@ -8,7 +8,6 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/random.hpp"
 #include "veridyn/vehicle/manoeuvre/driver_model.hpp"
 #include "veridyn/vehicle/manoeuvre/turn_braking_driver.hpp"
@@ -228,7 +227,7 @@ Manoeuvre random_steer(double amplitude, double low, double high, double duratio
     if (progress.interrupted()) continue;
     double sum = 0.0;
     for (int k = first; k <= last; ++k) {
-      sum += std::cos(2.0 * kPi * k * t / duration + phase[at(k - first)]);
+      sum += std::cos(2.0 * kPi * k * t / duration + phase[k - first]);
     }
     value[i] = sum * smooth(t / kFade) * smooth((duration - t) / kFade);
     peak = std::max(peak, std::abs(value[i]));

@@ -41,9 +41,8 @@ Eigen::Matrix<double, kBicycleCharacteristics, Eigen::Dynamic> characteristic_se
   const std::array<Jet, kBicycleCharacteristics> values = to_array(characteristics(bicycle));
   Eigen::Matrix<double, kBicycleCharacteristics, Eigen::Dynamic> out(kBicycleCharacteristics, kColumns);
   for (std::size_t i = 0; i < kBicycleCharacteristics; ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    out.row(row) = values[i].v.transpose();
-    if (!std::isfinite(values[i].a)) out.row(row).setConstant(kNaN);
+    out.row(i) = values[i].v.transpose();
+    if (!std::isfinite(values[i].a)) out.row(i).setConstant(kNaN);
   }
   return out;
 }
@@ -56,11 +55,11 @@ std::array<double, kBicycleCharacteristics> characteristic_sigmas(const VehicleP
   const auto all = characteristic_sensitivities(parameters, speed);
   Eigen::MatrixXd J(kBicycleCharacteristics, count);
   for (Eigen::Index j = 0; j < count; ++j) {
-    J.col(j) = all.col(static_cast<Eigen::Index>(fields[at(j)]));
+    J.col(j) = all.col(fields[j]);
   }
   const Eigen::VectorXd variance = (J * covariance * J.transpose()).diagonal();
   std::array<double, kBicycleCharacteristics> sigma{};
-  for (std::size_t i = 0; i < sigma.size(); ++i) sigma[i] = std::sqrt(variance(static_cast<Eigen::Index>(i)));
+  for (std::size_t i = 0; i < sigma.size(); ++i) sigma[i] = std::sqrt(variance(i));
   return sigma;
 }
 

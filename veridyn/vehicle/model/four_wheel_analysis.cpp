@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/linear_algebra/general_eigen.hpp"
 #include "veridyn/numerics/linear_algebra/real_form.hpp"
 
@@ -41,7 +40,7 @@ std::pair<std::string, double> main_motion(const LinearFourWheel& model, const E
   double lag = 0.0;
   for (std::size_t i = 0; i < model.states.size(); ++i) {
     if (model.states[i] >= kLaggedSlip && model.states[i] < kLaggedSlip + 4) {
-      lag += std::norm(vector(static_cast<Eigen::Index>(i)));
+      lag += std::norm(vector(i));
     }
   }
   if (lag > 0.999 * vector.squaredNorm()) return {"tyre lag", lag / vector.squaredNorm()};
@@ -68,7 +67,7 @@ LinearFourWheel linear_four_wheel_frame(const VehicleParameters<double>& p, doub
   if (lagged_slip) {
     for (Eigen::Index i = 0; i < 4; ++i) out.states.push_back(kLaggedSlip + i);
   }
-  out.inertia = Eigen::VectorXd::Zero(signed_index(out.states.size()));
+  out.inertia = Eigen::VectorXd::Zero(out.states.size());
   out.inertia(0) = p.mass;
   out.inertia(1) = p.I_z;
   out.inertia(5) = p.mass - 4.0 * p.unsprung_mass;

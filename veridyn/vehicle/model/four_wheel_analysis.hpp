@@ -75,11 +75,11 @@ LinearFourWheel linearise(const FourWheelModel<double, Tyre>& with_options, doub
   const auto at = [&](Eigen::Index moved, double by) {
     FourWheelState<double> s = start;
     double steer = 0.0;
-    (moved < n ? s(out.states[static_cast<std::size_t>(moved)]) : steer) += by;
+    (moved < n ? s(out.states[moved]) : steer) += by;
     FourWheelRates<double> rates;
     model.rates(s, model.wheel_controls(steer), {}, rates);
     Eigen::VectorXd all(n + 4);
-    for (Eigen::Index i = 0; i < n; ++i) all(i) = rates.derivative(out.states[static_cast<std::size_t>(i)]);
+    for (Eigen::Index i = 0; i < n; ++i) all(i) = rates.derivative(out.states[i]);
     all.tail<4>() << s(kR), rates.lateral_acceleration, s(kV) / u, s(kRoll);
     return all;
   };

@@ -172,16 +172,15 @@ FourWheelModel<Scalar, Tyre>::FourWheelModel(const VehicleParameters<Scalar>& pa
   const Scalar sprung = p_.mass - 4.0 * p_.unsprung_mass;
   const Scalar x_s = ours ? Scalar(2.0 * p_.unsprung_mass * (p_.b - p_.a) / sprung) : Scalar(0.0);
   for (std::size_t i = 0; i < kWheels; ++i) {
-    const auto w = static_cast<Eigen::Index>(i);
     const bool front = is_front(i);
     const Scalar half = 0.5 * (front ? p_.track_f : p_.track_r);
-    x_[w] = front ? p_.a : Scalar(-p_.b);
-    y_[w] = is_left(i) ? half : Scalar(-half);
-    arm_[w] = x_[w] - x_s;
-    spring_[w] = front ? p_.K_sf : p_.K_sr;
-    damper_[w] = front ? p_.C_sf : p_.C_sr;
-    tyre_[w] = front ? p_.K_tf : p_.K_tr;
-    rest_[w] = loads[i];
+    x_[i] = front ? p_.a : Scalar(-p_.b);
+    y_[i] = is_left(i) ? half : Scalar(-half);
+    arm_[i] = x_[i] - x_s;
+    spring_[i] = front ? p_.K_sf : p_.K_sr;
+    damper_[i] = front ? p_.C_sf : p_.C_sr;
+    tyre_[i] = front ? p_.K_tf : p_.K_tr;
+    rest_[i] = loads[i];
   }
   bar_ = {p_.K_bf, p_.K_br};
   tilting_ = ours ? Scalar(sprung * gravity * p_.cg_height) : Scalar(0.0);
@@ -194,8 +193,7 @@ FourWheelModel<Scalar, Tyre>::FourWheelModel(const VehicleParameters<Scalar>& pa
   per_I_z_ = 1.0 / p_.I_z;
   Wheels stiffness;
   for (std::size_t i = 0; i < kWheels; ++i) {
-    const auto w = static_cast<Eigen::Index>(i);
-    stiffness[w] = tyres[i].cornering_stiffness(rest_[w]);
+    stiffness[i] = tyres[i].cornering_stiffness(rest_[i]);
   }
   guidance_ = WheelGuidance<Scalar>(p_, options.suspension_f, options.suspension_r, stiffness,
                                     rest_ - Scalar(p_.unsprung_mass * gravity));

@@ -66,17 +66,16 @@ WheelGuidance<Scalar>::WheelGuidance(const VehicleParameters<Scalar>& p, const A
                                      const AxleSuspension& rear, const Wheels& stiffness, const Wheels& spring_loads)
     : curve_f_(front.spring), curve_r_(rear.spring) {
   for (std::size_t i = 0; i < kWheels; ++i) {
-    const auto w = static_cast<Eigen::Index>(i);
     const AxleSuspension& axle = is_front(i) ? front : rear;
     const Scalar& track = is_front(i) ? p.track_f : p.track_r;
     const double side = is_left(i) ? 1.0 : -1.0;
-    roll_centre_[w] = Scalar(axle.roll_centre);
-    scrub_[w] = side * 2.0 * axle.roll_centre / track;
-    per_difference_[w] = axle.roll_steer / track;
-    per_travel_[w] = Scalar(-side * axle.bump_steer);
-    compliance_[w] = Scalar(axle.compliance_steer);
-    yielding_[w] = axle.compliance_steer * stiffness[w];
-    if (!(yielding_[w] < 0.9 && yielding_[w] > -0.9)) {
+    roll_centre_[i] = Scalar(axle.roll_centre);
+    scrub_[i] = side * 2.0 * axle.roll_centre / track;
+    per_difference_[i] = axle.roll_steer / track;
+    per_travel_[i] = Scalar(-side * axle.bump_steer);
+    compliance_[i] = Scalar(axle.compliance_steer);
+    yielding_[i] = axle.compliance_steer * stiffness[i];
+    if (!(yielding_[i] < 0.9 && yielding_[i] > -0.9)) {
       throw InputError("vehicle", fmt::format("compliance_steer_{} is {:g} rad/N; times the tyre's cornering stiffness "
                                               "it must be between -0.9 and 0.9",
                                               is_front(i) ? "f" : "r", axle.compliance_steer));

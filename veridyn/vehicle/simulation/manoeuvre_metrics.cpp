@@ -202,8 +202,7 @@ std::vector<Metric> ramp_steer_metrics(const VehicleTrajectory& t, double wheelb
   if (t.size() == 0) return list;
   const auto by_size = [](double one, double other) { return std::abs(one) < std::abs(other); };
   const auto most = std::ranges::max_element(t.lateral_acceleration, by_size) - t.lateral_acceleration.begin();
-  list.push_back({"steer_at_peak", t.steer[static_cast<std::size_t>(most)], "rad", "",
-                  "where the lateral acceleration is largest"});
+  list.push_back({"steer_at_peak", t.steer[most], "rad", "", "where the lateral acceleration is largest"});
   return list;
 }
 

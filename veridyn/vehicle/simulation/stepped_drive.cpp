@@ -54,7 +54,7 @@ SteppedDrive<Tyre>::SteppedDrive(const Model& model, std::shared_ptr<const Road>
     WheelArray<double> along, across;
     for (Eigen::Index i = 0; i < 4; ++i) {
       constexpr double kSmall = 1e-4;
-      const Tyre& tyre = model_.tyres()[static_cast<std::size_t>(i)];
+      const Tyre& tyre = model_.tyres()[i];
       const double load = model_.rest_loads()[i];
       along[i] = (tyre.forces(load, kSmall, 0.0, 0.0).Fx - tyre.forces(load, -kSmall, 0.0, 0.0).Fx) / (2.0 * kSmall);
       across[i] = tyre.cornering_stiffness(load);

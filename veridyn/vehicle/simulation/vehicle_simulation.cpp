@@ -124,24 +124,23 @@ void record(VehicleTrajectory& out, double time, const FourWheelState<double>& s
   out.pitch_acceleration.push_back(rates.derivative(kPitchRate));
   out.heave_acceleration.push_back(rates.derivative(kHeaveRate));
   for (std::size_t i = 0; i < kWheels; ++i) {
-    const auto w = static_cast<Eigen::Index>(i);
-    out.slip_angle[i].push_back(rates.slip_angle[w]);
-    out.Fx[i].push_back(rates.Fx[w]);
-    out.Fy[i].push_back(rates.Fy[w]);
-    out.Fz[i].push_back(rates.Fz[w]);
-    out.wheel_height[i].push_back(s(kWheelHeight + w));
-    out.suspension_travel[i].push_back(rates.suspension_travel[w]);
+    out.slip_angle[i].push_back(rates.slip_angle[i]);
+    out.Fx[i].push_back(rates.Fx[i]);
+    out.Fy[i].push_back(rates.Fy[i]);
+    out.Fz[i].push_back(rates.Fz[i]);
+    out.wheel_height[i].push_back(s(kWheelHeight + i));
+    out.suspension_travel[i].push_back(rates.suspension_travel[i]);
     out.road[i].push_back(road[i]);
     if (!spins) continue;
-    out.slip_ratio[i].push_back(rates.slip_ratio[w]);
-    out.wheel_speed[i].push_back(s(kWheelSpin + w));
+    out.slip_ratio[i].push_back(rates.slip_ratio[i]);
+    out.wheel_speed[i].push_back(s(kWheelSpin + i));
   }
 }
 
 void LiftOffs::change(double time, const WheelArray<double>& normal_force, std::vector<LiftOff>& found) {
   any_off_ = false;
   for (std::size_t i = 0; i < kWheels; ++i) {
-    const bool off = !(normal_force[static_cast<Eigen::Index>(i)] > 0.0), was_off = since_[i] >= 0.0;
+    const bool off = !(normal_force[i] > 0.0), was_off = since_[i] >= 0.0;
     if (off && !was_off) since_[i] = time;
     if (!off && was_off) {
       found.push_back({.wheel = i, .from = since_[i], .to = time});

@@ -58,8 +58,7 @@ struct RoadUnderWheels {
     PerWheel<double> heights;
     const auto [s, c] = numerics::sine_cosine<double>(state(kYaw));
     for (std::size_t i = 0; i < kWheels; ++i) {
-      const auto w = static_cast<Eigen::Index>(i);
-      const double ahead = model.wheel_x()[w], left = model.wheel_y()[w];
+      const double ahead = model.wheel_x()[i], left = model.wheel_y()[i];
       heights[i] = road->height({.x = state(kX) + (ahead * c - left * s),
                                  .y = state(kY) + (ahead * s + left * c),
                                  .distance = state(kDistance) + ahead,

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/filtered_noise.hpp"
 
 namespace veridyn::vehicle {

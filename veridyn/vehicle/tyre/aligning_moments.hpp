@@ -27,8 +27,7 @@ template <typename Tyre, typename Scalar>
   WheelArray<Scalar> moment = WheelArray<Scalar>::Constant(Scalar(0.0));
   if constexpr (HasAligningMoment<Tyre, Scalar>) {
     for (std::size_t i = 0; i < kWheels; ++i) {
-      const auto w = static_cast<Eigen::Index>(i);
-      if (load[w] > 0.0) moment[w] = aligning_moment(tyres[i], load[w], slip_ratio[w], slip_angle[w], camber);
+      if (load[i] > 0.0) moment[i] = aligning_moment(tyres[i], load[i], slip_ratio[i], slip_angle[i], camber);
     }
   }
   return moment;

@@ -12,10 +12,9 @@ class FourTyres<FialaTyre<double>> {
  public:
   explicit FourTyres(const PerWheel<FialaTyre<double>>& tyres) : tyres_(tyres) {
     for (std::size_t i = 0; i < kWheels; ++i) {
-      const auto w = static_cast<Eigen::Index>(i);
-      slip_stiffness_[w] = tyres[i].slip_stiffness;
-      stiffness_[w] = tyres[i].stiffness;
-      slides_at_[w] = 3.0 * tyres[i].mu;
+      slip_stiffness_[i] = tyres[i].slip_stiffness;
+      stiffness_[i] = tyres[i].stiffness;
+      slides_at_[i] = 3.0 * tyres[i].mu;
     }
   }
 

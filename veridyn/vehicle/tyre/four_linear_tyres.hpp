@@ -11,9 +11,8 @@ class FourTyres<LinearTyre<double>> {
  public:
   explicit FourTyres(const PerWheel<LinearTyre<double>>& tyres) : tyres_(tyres) {
     for (std::size_t i = 0; i < kWheels; ++i) {
-      const auto w = static_cast<Eigen::Index>(i);
-      slip_stiffness_[w] = tyres[i].slip_stiffness;
-      stiffness_[w] = tyres[i].stiffness;
+      slip_stiffness_[i] = tyres[i].slip_stiffness;
+      stiffness_[i] = tyres[i].stiffness;
       limited_ = limited_ || tyres[i].mu < kInfinity;
     }
   }
@@ -33,10 +32,9 @@ class FourTyres<LinearTyre<double>> {
                                          const WheelArray<double>& slip_angle, double camber, WheelArray<double>& Fx,
                                          WheelArray<double>& Fy) const {
     for (std::size_t i = 0; i < kWheels; ++i) {
-      const auto w = static_cast<Eigen::Index>(i);
-      const TyreForces<double> force = tyres_[i].forces(load[w], slip_ratio[w], slip_angle[w], camber);
-      Fx[w] = force.Fx;
-      Fy[w] = force.Fy;
+      const TyreForces<double> force = tyres_[i].forces(load[i], slip_ratio[i], slip_angle[i], camber);
+      Fx[i] = force.Fx;
+      Fy[i] = force.Fy;
     }
   }
 

@@ -48,10 +48,9 @@ VERIDYN_WIDE void FourTyres<MagicFormulaTyre<double>>::forces(const WheelArray<d
   using namespace in_lanes;
   if (!together_) {
     for (std::size_t i = 0; i < kWheels; ++i) {
-      const auto w = static_cast<Eigen::Index>(i);
-      const TyreForces<double> f = tyres_[i].forces(load_of[w], ratio_of[w], angle_of[w], camber);
-      Fx[w] = f.Fx;
-      Fy[w] = f.Fy;
+      const TyreForces<double> f = tyres_[i].forces(load_of[i], ratio_of[i], angle_of[i], camber);
+      Fx[i] = f.Fx;
+      Fy[i] = f.Fy;
     }
     return;
   }

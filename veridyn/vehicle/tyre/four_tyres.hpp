@@ -18,8 +18,7 @@ class FourTyres {
               const WheelArray<Scalar>& slip_angle, const Scalar& camber, WheelArray<Scalar>& Fx,
               WheelArray<Scalar>& Fy) const {
     const auto of = [&](std::size_t wheel) {
-      const auto w = static_cast<Eigen::Index>(wheel);
-      return tyres_[wheel].forces(load[w], slip_ratio[w], slip_angle[w], camber);
+      return tyres_[wheel].forces(load[wheel], slip_ratio[wheel], slip_angle[wheel], camber);
     };
     const TyreForces<Scalar> fl = of(0), fr = of(1), rl = of(2), rr = of(3);
     Fx << fl.Fx, fr.Fx, rl.Fx, rr.Fx;
