@@ -13,6 +13,7 @@
 #include "apps/veridyn/output_folder.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/live/rig/live_study.hpp"
 #include "veridyn/live/serial/pseudo_terminal.hpp"
 #include "veridyn/live/serial/serial_line.hpp"
@@ -114,7 +115,7 @@ void say_state(const CommonOptions& options, const VirtualCar& car, CarState& sa
   constexpr std::array<const char*, kCarStates> kNames = {"holding", "driving", "braking: the link is lost"};
   if (car.actuation().state == said) return;
   said = car.actuation().state;
-  print_line(options, fmt::format("{:8.2f} s  {}", time, kNames[said]));
+  print_line(options, fmt::format("{:8.2f} s  {}", time, kNames[static_cast<std::size_t>(said)]));
 }
 
 int rig_car(const Arguments& arguments) {

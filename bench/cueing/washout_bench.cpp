@@ -67,7 +67,9 @@ void step(benchmark::State& state, const std::string& algorithm, const std::stri
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
   if (!single) return;
   std::sort(times.begin(), times.end());
-  const auto at = [&](double share) { return times[share * static_cast<double>(times.size() - 1)]; };
+  const auto at = [&](double share) {
+    return times[static_cast<std::size_t>(share * static_cast<double>(times.size() - 1))];
+  };
   state.counters["p50"] = at(0.5);
   state.counters["p99.9"] = at(0.999);
   state.counters["most"] = times.back();

@@ -156,7 +156,7 @@ void static_optimization(benchmark::State& state, double exponent, StaticForce f
   for (auto _ : state) {
     const double phase = 2.0 * kPi * static_cast<double>(s) / 200.0;
     for (Eigen::Index i = 0; i < 6; ++i) {
-      const auto& [F0, L0, LS, phi0] = kArm26[i];
+      const auto& [F0, L0, LS, phi0] = kArm26[static_cast<std::size_t>(i)];
       length(i) = LS + L0 * (1.0 + 0.15 * std::sin(phase + 0.7 * static_cast<double>(i)));
       speed(i) = 0.1 * std::cos(phase + 0.7 * static_cast<double>(i));
     }

@@ -35,7 +35,7 @@ StartState start_of(const Model& model, int number) {
   constexpr std::array<std::array<double, 2>, 3> kStart{{{2.5, 30.0}, {10.0, 30.0}, {0.0, 40.0}}};
   StartState start = default_start(model);
   for (Eigen::Index c = 0; c < 2; ++c) {
-    start.q(c) = kStart[number - 1][c] * kDegree;
+    start.q(c) = kStart[static_cast<std::size_t>(number - 1)][static_cast<std::size_t>(c)] * kDegree;
   }
   return start;
 }

@@ -27,7 +27,7 @@ struct Case {
     for (int i = 0; i < 64; ++i) {
       Eigen::VectorXd q = model.default_pose();
       for (Eigen::Index c = 0; c < q.size(); ++c) {
-        const Coordinate& k = model.coordinates[c];
+        const Coordinate& k = model.coordinates[static_cast<std::size_t>(c)];
         if (k.high > k.low && k.high - k.low < 10.0)
           q[c] = k.low + (k.high - k.low) * (0.5 + 0.4 * std::sin(1.7 * i + 2.3 * static_cast<double>(c)));
       }

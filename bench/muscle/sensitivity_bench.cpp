@@ -35,13 +35,14 @@ void sensitivities(benchmark::State& state, const char* file, PathSource paths, 
   const MotionSegment segment{start, test::arm26_scenario(2, 0.001), frame_times(0.0, 1.0, 100.0)};
   const MuscleParametricModel model(system, names, {segment}, 1e-5);
   const auto initial = model.initial_conditions(0);
-  Eigen::VectorXd theta(names.size() + initial.size());
+  Eigen::VectorXd theta(static_cast<Eigen::Index>(names.size() + initial.size()));
   std::vector<Eigen::Index> active;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    theta(i) = model.parameters()[i].start;
+    theta(static_cast<Eigen::Index>(i)) = model.parameters()[i].start;
     active.push_back(static_cast<Eigen::Index>(i));
   }
-  for (std::size_t i = 0; i < initial.size(); ++i) theta(names.size() + i) = initial[i].start;
+  for (std::size_t i = 0; i < initial.size(); ++i)
+    theta(static_cast<Eigen::Index>(names.size() + i)) = initial[i].start;
   estimation::ModelResponse response;
   // The fastest of many: what others do on the machine is no part of the ratio.
   const auto fastest = [&](std::span<const Eigen::Index> columns) {

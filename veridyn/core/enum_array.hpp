@@ -12,8 +12,8 @@ template <typename Enum, typename T, std::size_t kCount>
 requires std::is_enum_v<Enum>
 struct EnumArray : std::array<T, kCount> {
   using std::array<T, kCount>::operator[];
-  [[nodiscard]] constexpr T& operator[](Enum which) { return (*this)[which]; }
-  [[nodiscard]] constexpr const T& operator[](Enum which) const { return (*this)[which]; }
+  [[nodiscard]] constexpr T& operator[](Enum which) { return (*this)[static_cast<std::size_t>(which)]; }
+  [[nodiscard]] constexpr const T& operator[](Enum which) const { return (*this)[static_cast<std::size_t>(which)]; }
 };
 
 /// The enumerators of an enumeration that counts from 0 to below `kCount`, in order, for loops over all of them:

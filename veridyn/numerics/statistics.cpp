@@ -229,8 +229,9 @@ FitMeasures fit_measures(std::span<const double> measured, std::span<const doubl
 double quantile_of_sorted(std::span<const double> sorted, double share) {
   VERIDYN_ASSERT(!sorted.empty());
   const double place = share * static_cast<double>(sorted.size() - 1);
-  const std::size_t above = std::min(place + 1, sorted.size() - 1);
-  return sorted[place] + (place - static_cast<double>(place)) * (sorted[above] - sorted[place]);
+  const auto below = static_cast<std::size_t>(place);
+  const std::size_t above = std::min(below + 1, sorted.size() - 1);
+  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
 
 double rms(std::span<const double> x) {

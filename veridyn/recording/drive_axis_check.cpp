@@ -42,7 +42,7 @@ Values averaged(const Values& x, double step) {
   const auto n = signed_index(x.size());
   for (std::ptrdiff_t k = half; k + half < n; ++k) {
     const auto from = static_cast<std::size_t>(k - half), to = static_cast<std::size_t>(k + half + 1);
-    if (bad[to] == bad[from]) out[k] = (sum[to] - sum[from]) / static_cast<double>(to - from);
+    if (bad[to] == bad[from]) out[at(k)] = (sum[to] - sum[from]) / static_cast<double>(to - from);
   }
   return out;
 }
@@ -98,7 +98,7 @@ std::vector<Moments> blocks_of(const Values& y, const Values& x, double step, st
   for (std::size_t k = 0; k < y.size(); ++k) {
     const std::ptrdiff_t i = static_cast<std::ptrdiff_t>(k) - lag;
     if (i < 0 || i >= signed_index(x.size())) continue;
-    const double a = x[i], b = y[k];
+    const double a = x[at(i)], b = y[k];
     if (!std::isfinite(a) || !std::isfinite(b)) continue;
     if (k / length >= blocks.size()) blocks.resize(k / length + 1);
     blocks[k / length].add(a, b);
@@ -362,7 +362,7 @@ DriveFault described(const Suspect& suspect, const DriveMotion& m, const std::ve
   }
   for (const InertialChannel s : suspect.signals) {
     if (m.signals[s].empty()) continue;
-    const InertialChannel from = s <= kAccelZ ? exchange.from[s] : s;
+    const InertialChannel from = s <= kAccelZ ? exchange.from[static_cast<std::size_t>(s)] : s;
     f.lines.push_back(line(s, source_of(from, origins), 1.0 / suspect.factor, origins));
   }
   return f;

@@ -89,7 +89,7 @@ std::vector<PartialSums> sums_at(const DelayedEffect& e, long lag, bool with_cau
       const long rows = std::min(kBlock, (end - k + stride - 1) / stride);
       auto filled = block.topRows(rows);
       for (Eigen::Index j = 0; j < width; ++j) {
-        const Column& column = columns[j];
+        const Column& column = columns[static_cast<std::size_t>(j)];
         if (column.signal == nullptr)
           filled.col(j).setOnes();
         else
@@ -100,7 +100,7 @@ std::vector<PartialSums> sums_at(const DelayedEffect& e, long lag, bool with_cau
       for (long i = 0; i < rows; ++i)
         if (!std::isfinite(total(i))) filled.row(i).setZero();
       block.bottomRows(kBlock - rows).setZero();
-      sums[part].products += numerics::transposed_product(block, block);
+      sums[static_cast<std::size_t>(part)].products += numerics::transposed_product(block, block);
     }
   }
   return sums;
@@ -128,7 +128,7 @@ class SumsWithoutGaps {
     for (long part = 0; part < static_cast<long>(kParts); ++part) {
       const auto [begin, end] = rows_of(part, n_, lag);
       if (begin >= end) continue;
-      Eigen::MatrixXd& products = sums[part].products;
+      Eigen::MatrixXd& products = sums[static_cast<std::size_t>(part)].products;
       put_running(still_, still_place_, begin, end, products);
       put_running(moving_, moving_place_, begin - lag, end - lag, products);
       for (std::size_t i = 0; i < still_.signals.size(); ++i) {
@@ -281,7 +281,8 @@ DelayReport common_effect_delay(std::string cause_name, std::string effect_name,
   }
   const std::vector<double>& explained = shares.whole;
   const auto best = std::max_element(explained.begin(), explained.end()) - explained.begin();
-  const double top = explained[best];
+  const auto at = static_cast<std::size_t>(best);
+  const double top = explained[at];
   report.correlation = std::sqrt(std::clamp(top, 0.0, 1.0));
   const double by_cause = top - share_without_causes(effects, first + best);
   if (!(top > kLeastExplained) || !(by_cause > kLeastByCause)) {
@@ -294,7 +295,7 @@ DelayReport common_effect_delay(std::string cause_name, std::string effect_name,
     report.text = fmt::format("negative, as far as was searched: a {} cannot follow its effect, left alone", kind);
     return report;
   }
-  if (best == 0 || best + 1 == explained.size()) {
+  if (best == 0 || at + 1 == explained.size()) {
     report.text = "not determined: no clear optimum";
     return report;
   }
@@ -316,7 +317,9 @@ DelayReport common_effect_delay(std::string cause_name, std::string effect_name,
     return report;
   }
   // Where causes and others move together two lags may explain as much: the top's own error does not show that.
-  const auto gain = [&](const std::vector<double>& share) { return share[best] - share[longest]; };
+  const auto gain = [&](const std::vector<double>& share) {
+    return share[at] - share[static_cast<std::size_t>(longest)];
+  };
   const double least = std::max(options.min_delay_s, 3.0 * report.sigma_s);
   if (report.delay_s < -least) {
     report.text = fmt::format("negative: a {} cannot follow its effect, left alone", kind);

@@ -240,7 +240,8 @@ void run_adversary(const std::string& name, const Platform& platform, long steps
       std::swap(washout, saved);
     } else if (restart < 1.2e-3) {
       const auto all = washout_algorithms();
-      washout = all[uniform(random) * static_cast<double>(all.size())].design()->make(platform);
+      washout =
+          all[static_cast<std::size_t>(uniform(random) * static_cast<double>(all.size()))].design()->make(platform);
       washout->reset(s);
     }
     const PlatformState before = guard.state();

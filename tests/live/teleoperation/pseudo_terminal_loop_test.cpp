@@ -117,7 +117,9 @@ PseudoTerminalRun run_on_pseudo_terminals(double time, double flipped) {
 
 void print(const PseudoTerminalRun& run) {
   const auto quantile = [&](double q) {
-    return 1e-6 * static_cast<double>(run.command_delays[q * static_cast<double>(run.command_delays.size() - 1)]);
+    return 1e-6 *
+           static_cast<double>(
+               run.command_delays[static_cast<std::size_t>(q * static_cast<double>(run.command_delays.size() - 1))]);
   };
   fmt::print(
       "{} commands executed, {} wrong; command p50 {:.2f} ms, p99 {:.2f} ms, longest {:.2f} ms; round trip p50 "

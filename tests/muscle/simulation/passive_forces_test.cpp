@@ -4,30 +4,11 @@
 
 #include <cmath>
 
-#include "veridyn/muscle/osim/osim_reader.hpp"
+#include "tests/muscle/mass_on_slider.hpp"
 #include "veridyn/muscle/simulation/forward_simulation.hpp"
 
 namespace veridyn::muscle {
 namespace {
-
-/// A mass on a vertical slider, with forces.
-Model on_a_slider(const std::string& forces) {
-  return OsimFile::parse(
-             R"(<OpenSimDocument Version="40000"><Model name="m"><gravity>0 -10 0</gravity><BodySet><objects>
-<Body name="mass"><mass>2</mass><inertia>0.1 0.1 0.1 0 0 0</inertia></Body></objects></BodySet>
-<JointSet><objects><SliderJoint name="rail"><socket_parent_frame>up</socket_parent_frame>
-<socket_child_frame>along</socket_child_frame><coordinates><Coordinate name="height"/></coordinates>
-<frames><PhysicalOffsetFrame name="up"><socket_parent>/ground</socket_parent><orientation>0 0 1.5707963267948966
-</orientation></PhysicalOffsetFrame><PhysicalOffsetFrame name="along"><socket_parent>/bodyset/mass</socket_parent>
-<orientation>0 0 1.5707963267948966</orientation></PhysicalOffsetFrame></frames></SliderJoint></objects></JointSet>
-<ContactGeometrySet><objects><ContactHalfSpace name="floor"><socket_frame>/ground</socket_frame><orientation>
-0 0 -1.5707963267948966</orientation></ContactHalfSpace><ContactSphere name="ball"><socket_frame>/bodyset/mass
-</socket_frame><radius>0.1</radius></ContactSphere></objects></ContactGeometrySet>
-<ForceSet><objects>)" +
-                 forces + "</objects></ForceSet></Model></OpenSimDocument>",
-             "m.osim")
-      .model();
-}
 
 constexpr const char* kPathText =
     "<GeometryPath><PathPointSet><objects><PathPoint name=\"a\"><socket_parent_frame>/ground</socket_parent_frame>"
@@ -69,19 +50,9 @@ TEST(PassiveForces, ALigamentHoldsAMassWhereItsCurveCarriesTheWeight) {
 }
 
 TEST(PassiveForces, ABallBouncesToItsHeightAndWithDissipationComesToRest) {
-  const auto contact = [](const char* dissipation) {
-    return std::string(
-               "<HuntCrossleyForce name=\"c\"><HuntCrossleyForce::ContactParametersSet name=\"contact_parameters\">"
-               "<objects><HuntCrossleyForce::ContactParameters><geometry>floor "
-               "ball</geometry><stiffness>1e5</stiffness>"
-               "<dissipation>") +
-           dissipation +
-           "</dissipation></HuntCrossleyForce::ContactParameters></objects></HuntCrossleyForce::ContactParametersSet>"
-           "</HuntCrossleyForce>";
-  };
-  const MuscleTrajectory bounce = released(on_a_slider(contact("0")), 0.2, 2.0);
+  const MuscleTrajectory bounce = released(on_a_slider(ball_on_floor("0")), 0.2, 2.0);
   ASSERT_EQ(bounce.end, SimulationEnd::kCompleted);
-  const double k = 4.0 / 3.0 * 1e5 / std::pow(2.0, 1.5) * std::sqrt(0.1);
+  const double k = kBallStiffness;
   double lowest = 1.0;
   for (Eigen::Index i = 0; i < bounce.q.rows(); ++i) {
     const double depth = std::max(0.0, 0.1 - bounce.q(i, 0));
@@ -91,7 +62,7 @@ TEST(PassiveForces, ABallBouncesToItsHeightAndWithDissipationComesToRest) {
     lowest = std::min(lowest, bounce.q(i, 0));
   }
   EXPECT_LT(lowest, 0.1);
-  const MuscleTrajectory rest = released(on_a_slider(contact("20")), 0.12, 4.0);
+  const MuscleTrajectory rest = released(on_a_slider(ball_on_floor("20")), 0.12, 4.0);
   ASSERT_EQ(rest.end, SimulationEnd::kCompleted);
   EXPECT_NEAR(rest.q(rest.q.rows() - 1, 0), 0.1 - std::pow(20.0 / k, 2.0 / 3.0), 1e-4);
 }

@@ -27,6 +27,23 @@ Vehicle car() {
   return vehicle;
 }
 
+TEST(EstimatedParameters, AreWhatIsDeterminedOnTheSameWheelbase) {
+  using estimation::ParameterStatus;
+  const VehicleParameters<double> start = car().parameters;
+  const std::vector<estimation::Parameter> parameters = {
+      {.name = "C_f", .value = 5e4, .status = ParameterStatus::kIdentified},
+      {.name = "C_r", .value = 7e4, .status = ParameterStatus::kNotExcited},
+      {.name = "a", .value = 1.3, .status = ParameterStatus::kIdentified},
+      {.name = "mu", .value = 0.8, .status = ParameterStatus::kNotExcited}};
+  const VehicleParameters<double> p = estimated_parameters(start, parameters);
+  EXPECT_EQ(p.C_f, 5e4);
+  EXPECT_EQ(p.C_r, start.C_r);
+  EXPECT_EQ(p.I_z, start.I_z);
+  EXPECT_EQ(p.a, 1.3);
+  EXPECT_DOUBLE_EQ(p.wheelbase(), start.wheelbase());
+  EXPECT_EQ(p.mu, 0.8) << "fitted together with C_f";
+}
+
 TEST(EstimatedVehicle, HasTheTyresOfTheStructureThatWasIdentified) {
   const std::vector<estimation::Parameter> linear{identified("C_f", 61000.0), identified("C_r", 72000.0),
                                                   identified("I_z", 2100.0)};

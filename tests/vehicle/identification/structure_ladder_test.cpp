@@ -49,7 +49,9 @@ VehicleTrajectory four_wheel_drive() {
       testing::linear_car(testing::car_with_bars()), [&](double t) { return Controls{.steer = steer(t)}; }, options);
 }
 
-double value_of(const StructureLadder& ladder, DriveUnknown unknown) { return ladder.fit.raw.theta(unknown); }
+double value_of(const StructureLadder& ladder, DriveUnknown unknown) {
+  return ladder.fit.raw.theta(static_cast<Eigen::Index>(unknown));
+}
 
 TEST(StructureLadder, APlainBicycleStaysOne) {
   const StructureLadder ladder = climbed(bicycle_drive(), reference_drive_sensors(), family_car());

@@ -66,7 +66,7 @@ void internal::take_out_jumps(const CoefficientModel& model, const FlightSignals
   constexpr Eigen::Index kRowsAJump = 10;
   if (count == 0 || kRowsAJump * count > data.rows()) return;
   Eigen::MatrixXd nuisance(data.rows(), count);
-  for (Eigen::Index j = 0; j < count; ++j) nuisance.col(j) = impulses[j];
+  for (Eigen::Index j = 0; j < count; ++j) nuisance.col(j) = impulses[at(j)];
   Eigen::MatrixXd columns(data.rows(), data.parameters() + 1);
   columns << data.regressors, data.regressand;
   columns -= nuisance * numerics::shortest_least_squares(nuisance, columns);
@@ -96,19 +96,19 @@ Axis axis_of(Coefficient coefficient) {
 Eigen::MatrixXd row_error_covariance(const CoefficientModel& model, const FlightSignals& signals, std::size_t k,
                                      const Subject& subject) {
   const auto n = signed_index(model.size());
-  Eigen::VectorXd classical = Eigen::VectorXd::Zero(kFlightSignals);
+  Eigen::VectorXd classical = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(kFlightSignals));
   Eigen::VectorXd berkson = classical;
   for (std::size_t i = 0; i < kFlightSignals; ++i) {
     const GridSignal& signal = signals.signals[i];
     const double variance = signal.sigma * signal.sigma;
-    if (signal.error == ErrorKind::kClassical) classical(i) = variance;
-    if (signal.error == ErrorKind::kBerkson) berkson(i) = variance;
+    if (signal.error == ErrorKind::kClassical) classical(static_cast<Eigen::Index>(i)) = variance;
+    if (signal.error == ErrorKind::kBerkson) berkson(static_cast<Eigen::Index>(i)) = variance;
   }
   CoefficientRow row = coefficient_row(model, signals.sample(k), subject, signals.air_density[k]);
   // A thrust that was computed from the airspeed has its error.
   if (!signals.thrust_per_airspeed.empty()) {
-    row.jacobian.col(FlightSignal::kAirspeed) +=
-        signals.thrust_per_airspeed[k] * row.jacobian.col(FlightSignal::kThrust);
+    row.jacobian.col(static_cast<Eigen::Index>(FlightSignal::kAirspeed)) +=
+        signals.thrust_per_airspeed[k] * row.jacobian.col(static_cast<Eigen::Index>(FlightSignal::kThrust));
   }
   Eigen::MatrixXd W = row.jacobian * classical.asDiagonal() * row.jacobian.transpose();
   W(n, n) += row.jacobian.row(n).cwiseAbs2().dot(berkson);
@@ -157,7 +157,7 @@ RegressionData coefficient_data(const CoefficientModel& model, const FlightSigna
   data.regressors.resize(count, n);
   data.regressand.resize(count);
   for (Eigen::Index i = 0; i < count; ++i) {
-    const std::size_t k = rows[i];
+    const std::size_t k = rows[at(i)];
     const FlightSample<double> sample = signals.sample(k);
     const double rho = signals.air_density[k];
     const double torque = signals.torque.empty() ? 0.0 : signals.torque[k];

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "veridyn/aircraft/identification/body_error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/gaussian_copula.hpp"
 
 namespace veridyn::aircraft {
@@ -28,10 +29,12 @@ AeroCoefficients<Scalar> coefficients_of(const Scalar* x, const Subject& subject
 Eigen::MatrixXd jacobian_at(const Eigen::VectorXd& x, const Subject& subject) {
   using Jet = ceres::Jet<double, static_cast<int>(kCoefficientInputs)>;
   std::array<Jet, kCoefficientInputs> jets;
-  for (std::size_t i = 0; i < kCoefficientInputs; ++i) jets[i] = Jet(x(i), static_cast<int>(i));
+  for (std::size_t i = 0; i < kCoefficientInputs; ++i)
+    jets[i] = Jet(x(static_cast<Eigen::Index>(i)), static_cast<int>(i));
   const AeroCoefficients<Jet> c = coefficients_of(jets.data(), subject);
-  Eigen::MatrixXd J(kCoefficients, kCoefficientInputs);
-  for (std::size_t i = 0; i < kCoefficients; ++i) J.row(i) = select(c, static_cast<Coefficient>(i)).v.transpose();
+  Eigen::MatrixXd J(static_cast<Eigen::Index>(kCoefficients), static_cast<Eigen::Index>(kCoefficientInputs));
+  for (std::size_t i = 0; i < kCoefficients; ++i)
+    J.row(static_cast<Eigen::Index>(i)) = select(c, static_cast<Coefficient>(i)).v.transpose();
   return J;
 }
 
@@ -89,19 +92,21 @@ UncertaintyOptions UncertaintyOptions::read(const StudyTable& table) {
 
 estimation::UncertainInputs coefficient_inputs(std::span<const PreparedFlight> flights, const Subject& subject,
                                                const UncertaintyOptions& options, const CalibrationSigma& calibration) {
+  const auto n = static_cast<Eigen::Index>(kCoefficientInputs);
   const auto measured = static_cast<Eigen::Index>(kFlightSignals + 1);
   estimation::UncertainInputs inputs;
-  inputs.low = Eigen::VectorXd::Zero(kCoefficientInputs);
-  inputs.high = Eigen::VectorXd::Zero(kCoefficientInputs);
-  inputs.correlation = Eigen::MatrixXd::Identity(kCoefficientInputs, kCoefficientInputs);
-  Eigen::VectorXd sigma = Eigen::VectorXd::Zero(kCoefficientInputs);
+  inputs.low = Eigen::VectorXd::Zero(n);
+  inputs.high = Eigen::VectorXd::Zero(n);
+  inputs.correlation = Eigen::MatrixXd::Identity(n, n);
+  Eigen::VectorXd sigma = Eigen::VectorXd::Zero(n);
 
   const std::vector<FlightMoment> rows = airborne_samples(flights);
-  Eigen::MatrixXd samples(rows.size(), measured);
+  Eigen::MatrixXd samples(signed_index(rows.size()), measured);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const FlightSample<double> s = rows[i].signals->sample(rows[i].at);
-    for (std::size_t j = 0; j < kFlightSignals; ++j) samples(i, j) = s.value[j];
-    samples(i, measured - 1) = rows[i].signals->air_density[rows[i].at];
+    for (std::size_t j = 0; j < kFlightSignals; ++j)
+      samples(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = s.value[j];
+    samples(static_cast<Eigen::Index>(i), measured - 1) = rows[i].signals->air_density[rows[i].at];
   }
   for (std::size_t j = 0; j < kFlightSignals; ++j) {
     inputs.names.emplace_back(kFlightSignalNames[j]);
@@ -112,7 +117,7 @@ estimation::UncertainInputs coefficient_inputs(std::span<const PreparedFlight> f
       squares += signal.sigma * signal.sigma;
       count += 1.0;
     }
-    if (count > 0.0) sigma(j) = options.sigma[j].value_or(std::sqrt(squares / count));
+    if (count > 0.0) sigma(static_cast<Eigen::Index>(j)) = options.sigma[j].value_or(std::sqrt(squares / count));
   }
   inputs.names.emplace_back("air_density");
   sigma(measured - 1) = options.sigma_air_density;
@@ -141,7 +146,10 @@ estimation::UncertainInputs coefficient_inputs(std::span<const PreparedFlight> f
   const double Va = 0.5 * (inputs.low(airspeed) + inputs.high(airspeed));
   const double rho = 0.5 * (inputs.low(measured - 1) + inputs.high(measured - 1));
   for (const auto& [channel, left] : calibration) {
-    const auto add = [&](FlightSignal which, double s) { sigma(which) = std::hypot(sigma(which), s); };
+    const auto add = [&](FlightSignal which, double s) {
+      const auto at = static_cast<Eigen::Index>(which);
+      sigma(at) = std::hypot(sigma(at), s);
+    };
     if (channel == "alpha") add(FlightSignal::kAlpha, left);
     if (channel == "beta") add(FlightSignal::kBeta, left);
     if (channel == "airspeed") add(FlightSignal::kAirspeed, left);
@@ -182,12 +190,13 @@ UncertaintyReport coefficient_uncertainty(const estimation::UncertainInputs& inp
 
   const std::size_t count = subject.inertia ? kCoefficients : 3;
   for (std::size_t i = 0; i < count; ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
     report.coefficients.push_back({.coefficient = static_cast<Coefficient>(i),
                                    .error = result.outputs[i],
-                                   .sigma_linear = all(i),
-                                   .sigma_sensors = sensors(i),
-                                   .sigma_body = body(i),
-                                   .range = range(i)});
+                                   .sigma_linear = all(at),
+                                   .sigma_sensors = sensors(at),
+                                   .sigma_body = body(at),
+                                   .range = range(at)});
   }
   report.draws = result.draws;
   report.correlation_change = result.correlation_change;

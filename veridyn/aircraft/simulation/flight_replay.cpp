@@ -4,6 +4,7 @@
 
 #include "veridyn/aircraft/model/atmosphere.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/ode.hpp"
 #include "veridyn/numerics/rotation.hpp"
 
@@ -28,7 +29,8 @@ FlightReplay::FlightReplay(const Recording& truth, double gravity) : gravity_(gr
 std::vector<double> FlightReplay::flown(std::size_t signal) const { return value_[kReplaySignals[signal]]; }
 
 Eigen::Vector3d FlightReplay::vector(Truth first, std::size_t sample) const {
-  return {value_[first][sample], value_[first + 1][sample], value_[first + 2][sample]};
+  const auto i = static_cast<std::size_t>(first);
+  return {value_[i][sample], value_[i + 1][sample], value_[i + 2][sample]};
 }
 
 RigidBodyState<double> FlightReplay::state(std::size_t sample) const {
@@ -49,7 +51,7 @@ Controls<double> FlightReplay::controls(std::size_t sample) const {
 
 bool FlightReplay::fly(const Subject& subject, std::size_t begin, std::size_t end, Eigen::MatrixXd& signals) const {
   const MassProperties body(subject.mass, subject.inertia->matrix());
-  signals.resize(kReplaySignals.size(), end - begin);
+  signals.resize(signed_index(kReplaySignals.size()), signed_index(end - begin));
   RigidBodyState<double> x = state(begin);
   for (std::size_t k = begin; k < end; ++k) {
     const double rho = standard_atmosphere(-x(2)).density;
@@ -61,7 +63,7 @@ bool FlightReplay::fly(const Subject& subject, std::size_t begin, std::size_t en
     const bool flies = x.allFinite() && std::abs(loads.air.alpha) <= 0.5 * kPi && omega.norm() <= 50.0;
     if (!flies) return false;
     const Eigen::Vector3d accel = loads.force / subject.mass;
-    signals.col(k - begin) << omega, loads.air.alpha, loads.air.beta, loads.air.Va, accel;
+    signals.col(signed_index(k - begin)) << omega, loads.air.alpha, loads.air.beta, loads.air.Va, accel;
     if (k + 1 == end) break;
     const Controls<double> next = controls(k + 1);
     const Eigen::Vector3d next_wind = vector(Truth::kMeanWindNorth, k + 1), next_gust = vector(Truth::kGustX, k + 1);

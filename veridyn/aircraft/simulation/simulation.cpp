@@ -25,7 +25,8 @@ using State = RigidBodyState<double>;
 const Vector3d kMagneticField(20e-6, 1e-6, 44e-6);
 
 void put(TruthSample& out, Truth first, const Vector3d& v) {
-  for (std::size_t k = 0; k < 3; ++k) out.value[first + k] = v(k);
+  const auto i = static_cast<std::size_t>(first);
+  for (std::size_t k = 0; k < 3; ++k) out.value[i + k] = v(static_cast<Eigen::Index>(k));
 }
 
 /// State, controls and air at one moment.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/core/index.hpp"
+
 namespace veridyn::cueing {
 
 void DelayLine::reset(double value) {
@@ -97,7 +99,7 @@ PlatformState PlatformSimulator::act_on_axes(std::vector<Actuator>& axes, const 
   PlatformState reached;
   for (const PlatformAxis which : kAllPlatformAxes) {
     const AxisState to = axis(told, which);
-    Actuator& a = axes[which];
+    Actuator& a = axes[static_cast<std::size_t>(which)];
     set_axis(reached, which, step ? a.step(to, *step) : a.reset(to.position));
   }
   return reached;
@@ -107,7 +109,7 @@ PlatformState PlatformSimulator::act_on_legs(const PlatformState& told, std::opt
   const Legs::Lengths wanted = legs_->lengths(told);
   Legs::Lengths reached = wanted;
   for (Eigen::Index i = 0; i < legs_->count(); ++i) {
-    Actuator& a = actuators_[i];
+    Actuator& a = actuators_[at(i)];
     const AxisState to = step ? a.step({wanted.position(i), wanted.rate(i), wanted.acceleration(i)}, *step)
                               : a.reset(wanted.position(i));
     reached.position(i) = to.position;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/cueing/score/false_cues.hpp"
 
 namespace veridyn::cueing {
@@ -45,7 +46,7 @@ AxisScore axis_score(const CueingRun& run, PlatformAxis which, const AxisLimits&
     const AxisState now = axis(run.steps[k].told, which);
     s.lowest = std::min(s.lowest, now.position);
     s.highest = std::max(s.highest, now.position);
-    s.limited += run.steps[k].limited[which] ? 1.0 : 0.0;
+    s.limited += run.steps[k].limited[static_cast<std::size_t>(which)] ? 1.0 : 0.0;
     s.rate = std::max(s.rate, std::abs(now.rate) / limits.rate);
     if (k == 0) continue;
     const double step = run.vehicle[k].time - run.vehicle[k - 1].time;

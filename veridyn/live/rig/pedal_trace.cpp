@@ -53,7 +53,7 @@ void PedalTrace::order(std::uint32_t sequence, double stamp, Nanoseconds sent) {
 void PedalTrace::answer(std::uint32_t sequence, Nanoseconds arrived) {
   if (!followed_ || !followed_->ordered || !reached(sequence, followed_->order)) return;
   const Followed& f = *followed_;
-  const auto add = [this](Stage stage, Nanoseconds time) { result_.stages[stage].add(time); };
+  const auto add = [this](Stage stage, Nanoseconds time) { result_.stages[static_cast<std::size_t>(stage)].add(time); };
   add(Stage::kInput, f.sent - f.moved);
   add(Stage::kLine, f.line);
   add(Stage::kCar, *f.reported - f.sent - f.line);

@@ -44,7 +44,9 @@ class PedalTrace {
     std::array<LatencyHistogram, kStages> stages = {};
     LatencyHistogram whole;
     std::uint64_t given_up = 0;
-    [[nodiscard]] const LatencyHistogram& operator[](Stage stage) const { return stages[stage]; }
+    [[nodiscard]] const LatencyHistogram& operator[](Stage stage) const {
+      return stages[static_cast<std::size_t>(stage)];
+    }
   };
   [[nodiscard]] const Result& result() const { return result_; }
 

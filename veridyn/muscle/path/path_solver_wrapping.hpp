@@ -6,6 +6,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/path/path_solver.hpp"
 
 /// Over which objects a path goes, and where it touches them.
@@ -331,7 +332,7 @@ inline void PathSolver<Scalar>::accelerate(std::size_t n, double moved, Accelera
     if (wrap < 0 || wrap != w_.nodes[k + 1].wrap) continue;
     if (w_.result[wrap] != &w_.result_solved[wrap]) continue;
     ++found;
-    later = std::max(later, wrap);
+    later = std::max(later, at(wrap));
   }
   if (found != 2 || moved >= 1.0) {
     a.known = 0;

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "veridyn/core/index.hpp"
 #include "veridyn/core/text.hpp"
 #include "veridyn/report/document/number_format.hpp"
 #include "veridyn/report/figures/cueing_figures.hpp"
@@ -214,7 +215,7 @@ Table false_cue_counts(const CueingResult& result) {
     std::array<double, 3> count{};
     double time = 0.0;
     for (const FalseCue& f : a.score.false_cues) {
-      count[f.kind] += 1.0;
+      count[static_cast<std::size_t>(f.kind)] += 1.0;
       time += f.end - f.begin;
     }
     t.rows.push_back(

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/open_loop/open_loop_evidence.hpp"
 #include "veridyn/estimation/open_loop/open_loop_forecast.hpp"
 #include "veridyn/estimation/open_loop/open_loop_scores.hpp"
@@ -77,8 +78,9 @@ EstimatedDriveModel fixed_model(const DriveOpenLoopProblem& problem, const Drive
       continue;
     }
     // That of another day says nothing.
-    out.covariance.row(bias).setZero();
-    out.covariance.col(bias).setZero();
+    const auto place = static_cast<Eigen::Index>(bias);
+    out.covariance.row(place).setZero();
+    out.covariance.col(place).setZero();
     model.start[bias] = 0.0;
     if (!options.offsets && acts) model.offsets.push_back(bias);
   }
@@ -89,14 +91,15 @@ EstimatedDriveModel fixed_model(const DriveOpenLoopProblem& problem, const Drive
 /// residual had beyond the sensor where the model was identified.
 std::vector<OpenLoopError> errors_of(const DriveParametricModel& model, const DriveSignals& signals,
                                      const estimation::Estimate& estimate) {
-  Eigen::VectorXd theta(model.parameters().size());
-  for (Eigen::Index i = 0; i < theta.size(); ++i) theta(i) = model.parameters()[i].start;
+  Eigen::VectorXd theta(signed_index(model.parameters().size()));
+  for (Eigen::Index i = 0; i < theta.size(); ++i) theta(i) = model.parameters()[at(i)].start;
   const Eigen::VectorXd by_steering = model.steering_noise_sigmas(theta);
   std::vector<OpenLoopError> errors;
   for (const estimation::ModelOutput& output : model.outputs()) {
     const auto signal =
         static_cast<DriveSignal>(std::ranges::find(kDriveSignalNames, output.name) - kDriveSignalNames.begin());
-    OpenLoopError error{.white = std::max(kRounding, signals[signal].sigma), .lasting = by_steering(errors.size())};
+    OpenLoopError error{.white = std::max(kRounding, signals[signal].sigma),
+                        .lasting = by_steering(signed_index(errors.size()))};
     const auto residual = estimate.fit.find(output.name + ".rmse");
     if (residual != estimate.fit.end() && residual->second > error.white)
       error.lasting =

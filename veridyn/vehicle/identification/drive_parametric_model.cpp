@@ -108,7 +108,7 @@ DriveParametricModel::DriveParametricModel(const DriveSignals& signals, std::spa
 }
 
 Eigen::Index DriveParametricModel::samples_before_divergence(std::size_t segment, const Eigen::VectorXd& theta) const {
-  estimation::RowMatrix output = estimation::RowMatrix::Constant(samples(segment), outputs_.size(), kNaN);
+  estimation::RowMatrix output = estimation::RowMatrix::Constant(samples(segment), signed_index(outputs_.size()), kNaN);
   (void)simulate(segment, theta, output);
   Eigen::Index driven = 0;
   while (driven < output.rows() && output.row(driven).allFinite()) ++driven;
@@ -118,10 +118,10 @@ Eigen::Index DriveParametricModel::samples_before_divergence(std::size_t segment
 std::vector<estimation::RowMatrix> DriveParametricModel::measured() const {
   std::vector<estimation::RowMatrix> all;
   for (const Segment& s : segments_) {
-    estimation::RowMatrix m(s.samples, compared_.size());
+    estimation::RowMatrix m(s.samples, signed_index(compared_.size()));
     for (Eigen::Index k = 0; k < s.samples; ++k)
       for (std::size_t j = 0; j < compared_.size(); ++j)
-        m(k, j) = compared_[j].value[s.begin + static_cast<std::size_t>(k)];
+        m(k, signed_index(j)) = compared_[j].value[s.begin + static_cast<std::size_t>(k)];
     if (!whitening_.empty()) whiten(s, m);
     all.push_back(std::move(m));
   }
@@ -147,7 +147,7 @@ void DriveParametricModel::whiten(const Segment& segment, Outputs<Scalar>& outpu
       white(j) = output(k, j);
       for (Eigen::Index i = 0; i < states; ++i) white(j) -= f.output(j, i) * s(i);
       output(k, j) = white(j);
-      if (!std::isfinite(compared_[j].value[sample])) white(j) = Scalar(0.0);
+      if (!std::isfinite(compared_[at(j)].value[sample])) white(j) = Scalar(0.0);
     }
     for (Eigen::Index i = 0; i < states; ++i) {
       next(i) = Scalar(0.0);
@@ -190,7 +190,7 @@ Scalar DriveParametricModel::true_output(DriveSignal signal, const Eigen::Matrix
 
 template <typename Scalar>
 Scalar DriveParametricModel::recorded(DriveSignal signal, const Scalar& shown, const Parameters<Scalar>& theta) const {
-  const auto unknown = [&](DriveUnknown u) -> const Scalar& { return theta(u); };
+  const auto unknown = [&](DriveUnknown u) -> const Scalar& { return theta(static_cast<Eigen::Index>(u)); };
   switch (signal) {
     case DriveSignal::kYawRate:
       return shown + unknown(DriveUnknown::kYawRateBias);
@@ -210,7 +210,7 @@ bool DriveParametricModel::drive(const Segment& segment, const RollingBicycle<Sc
                                  const Parameters<Scalar>& theta, Extent extent, Outputs<Scalar>& output) const {
   using State = Eigen::Matrix<Scalar, kStates, 1>;
   using Rates = RollingBicycleRates<Scalar, kStates>;
-  const auto unknown = [&](DriveUnknown u) -> const Scalar& { return theta(u); };
+  const auto unknown = [&](DriveUnknown u) -> const Scalar& { return theta(static_cast<Eigen::Index>(u)); };
   const auto n = static_cast<std::size_t>(segment.samples);
   const std::span<const double> steer_all(steer_), speed_all(speed_);
   const double step = grid_.step;
@@ -290,14 +290,15 @@ bool DriveParametricModel::drive(const Segment& segment, const RollingBicycle<Sc
     const Scalar delay =
         unknown(signal == DriveSignal::kYawRate ? DriveUnknown::kYawRateDelay : DriveUnknown::kAccelYDelay) / step;
     for (std::size_t k = 0; k < n; ++k)
-      output(k, j) = recorded(signal, between(shown[j], Scalar(static_cast<double>(k) - delay)), theta);
+      output(signed_index(k), signed_index(j)) =
+          recorded(signal, between(shown[j], Scalar(static_cast<double>(k) - delay)), theta);
   }
   return true;
 }
 
 template <typename Scalar, typename Work>
 auto DriveParametricModel::with_model(const Parameters<Scalar>& theta, const Work& work) const {
-  const auto unknown = [&](DriveUnknown u) -> const Scalar& { return theta(u); };
+  const auto unknown = [&](DriveUnknown u) -> const Scalar& { return theta(static_cast<Eigen::Index>(u)); };
   VehicleParameters<Scalar> p = start_.cast<Scalar>();
   p.C_f = unknown(DriveUnknown::kCf);
   p.C_r = unknown(DriveUnknown::kCr);
@@ -361,7 +362,7 @@ bool DriveParametricModel::simulate(const Segment& segment, const Parameters<Sca
   Parameters<Scalar> theta = given;
   const std::vector<DriveUnknown>& offsets = options_.offsets;
   for (std::size_t i = 0; i < offsets.size(); ++i)
-    theta(offsets[i]) += given(given.size() - signed_index(offsets.size() - i));
+    theta(static_cast<Eigen::Index>(offsets[i])) += given(given.size() - signed_index(offsets.size() - i));
   return with_model(theta, [&](const auto& model, auto states) {
     const bool drives = drive<decltype(states)::value>(segment, model, theta, extent, output);
     if (drives && !whitening_.empty()) whiten(segment, output);
@@ -386,8 +387,8 @@ template bool DriveParametricModel::simulate(std::size_t, const Parameters<ceres
 
 LinearDrive DriveParametricModel::linearized(double u, const Eigen::VectorXd& theta) const {
   const auto outputs = signed_index(compared_.size());
-  const double gain = 1.0 / (1.0 + theta(DriveUnknown::kSteerScale));
-  const double accel_scale = 1.0 + theta(DriveUnknown::kAccelYScale);
+  const double gain = 1.0 / (1.0 + theta(static_cast<Eigen::Index>(DriveUnknown::kSteerScale)));
+  const double accel_scale = 1.0 + theta(static_cast<Eigen::Index>(DriveUnknown::kAccelYScale));
   return with_model(theta, [&](const auto& model, auto states) -> LinearDrive {
     constexpr int kStates = decltype(states)::value;
     using State = Eigen::Matrix<double, kStates, 1>;
@@ -403,7 +404,7 @@ LinearDrive DriveParametricModel::linearized(double u, const Eigen::VectorXd& th
       const RollingBicycleRates<double, kStates> rates = model.rates(x, i < kStates ? 0.0 : gain * kSmall, u);
       Eigen::VectorXd y(outputs);
       for (Eigen::Index j = 0; j < outputs; ++j) {
-        const DriveSignal signal = compared_[j].signal;
+        const DriveSignal signal = compared_[at(j)].signal;
         const double scale = signal == DriveSignal::kAccelY ? accel_scale : 1.0;
         y(j) = scale * true_output<kStates>(signal, x, rates) / kSmall;
       }
@@ -420,8 +421,8 @@ LinearDrive DriveParametricModel::linearized(double u, const Eigen::VectorXd& th
 }
 
 DriveNoise DriveParametricModel::noise_at(double u, const Eigen::VectorXd& theta) const {
-  Eigen::VectorXd sigma(compared_.size());
-  for (Eigen::Index j = 0; j < sigma.size(); ++j) sigma(j) = compared_[j].sigma;
+  Eigen::VectorXd sigma(signed_index(compared_.size()));
+  for (Eigen::Index j = 0; j < sigma.size(); ++j) sigma(j) = compared_[at(j)].sigma;
   return drive_noise(
       linearized(u, theta),
       {.sigma = steer_error_share_ > 0.0 ? steer_sigma_ : 0.0, .band_share = steer_error_share_, .step = grid_.step},
@@ -429,7 +430,7 @@ DriveNoise DriveParametricModel::noise_at(double u, const Eigen::VectorXd& theta
 }
 
 DriveWhitening DriveParametricModel::whitening(const Eigen::VectorXd& theta) const {
-  const auto unknown = [&](DriveUnknown u) { return theta(u); };
+  const auto unknown = [&](DriveUnknown u) { return theta(static_cast<Eigen::Index>(u)); };
   const bool all_noisy = std::ranges::all_of(compared_, [](const Compared& c) { return c.sigma > 0.0; });
   if (!(steer_sigma_ > 0.0) || !(steer_error_share_ > 0.0) || !all_noisy || segments_.empty() ||
       delays_outputs(unknown(DriveUnknown::kYawRateDelay), unknown(DriveUnknown::kAccelYDelay)))
@@ -444,7 +445,7 @@ DriveWhitening DriveParametricModel::whitening(const Eigen::VectorXd& theta) con
 }
 
 Eigen::VectorXd DriveParametricModel::steering_noise_sigmas(const Eigen::VectorXd& theta) const {
-  Eigen::VectorXd none = Eigen::VectorXd::Zero(compared_.size());
+  Eigen::VectorXd none = Eigen::VectorXd::Zero(signed_index(compared_.size()));
   if (!(steer_sigma_ > 0.0) || !(steer_error_share_ > 0.0) || segments_.empty()) return none;
   const SpeedRange range = speeds();
   const DriveNoise noise = noise_at(0.5 * (range.slowest + range.fastest), theta);

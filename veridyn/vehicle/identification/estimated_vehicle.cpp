@@ -3,38 +3,59 @@
 #include <cmath>
 
 namespace veridyn::vehicle {
-Vehicle estimated_vehicle(Vehicle vehicle, std::span<const estimation::Parameter> parameters,
-                          const DriveModelOptions& model) {
-  const auto take_fitted = [&](const char* name, double& to) {
-    const estimation::Parameter* p = estimation::find_parameter(parameters, name);
-    if (p == nullptr || !std::isfinite(p->value)) return false;
-    to = p->value;
-    return true;
+namespace {
+
+using estimation::Parameter;
+
+bool take_fitted(std::span<const Parameter> parameters, const char* name, double& to) {
+  const Parameter* p = estimation::find_parameter(parameters, name);
+  if (p == nullptr || !std::isfinite(p->value)) return false;
+  to = p->value;
+  return true;
+}
+
+bool take_excited(std::span<const Parameter> parameters, const char* name, double& to) {
+  const Parameter* p = estimation::find_parameter(parameters, name);
+  return p != nullptr && p->status != estimation::ParameterStatus::kNotExcited && take_fitted(parameters, name, to);
+}
+
+}  // namespace
+
+VehicleParameters<double> estimated_parameters(VehicleParameters<double> vehicle,
+                                               std::span<const Parameter> parameters) {
+  const double wheelbase = vehicle.wheelbase();
+  take_excited(parameters, "C_f", vehicle.C_f);
+  take_excited(parameters, "C_r", vehicle.C_r);
+  take_excited(parameters, "I_z", vehicle.I_z);
+  if (take_excited(parameters, "a", vehicle.a)) vehicle.b = wheelbase - vehicle.a;
+  take_fitted(parameters, "mu", vehicle.mu);
+  return vehicle;
+}
+
+Vehicle estimated_vehicle(Vehicle vehicle, std::span<const Parameter> parameters, const DriveModelOptions& model) {
+  const VehicleParameters<double> p = vehicle.parameters = estimated_parameters(vehicle.parameters, parameters);
+  take_excited(parameters, "relaxation_length", vehicle.relaxation_length);
+  const auto fitted = [&](const char* name) {
+    double value = 0.0;
+    return take_fitted(parameters, name, value);
   };
-  const auto take = [&](const char* name, double& to) {
-    const estimation::Parameter* p = estimation::find_parameter(parameters, name);
-    return p != nullptr && p->status != estimation::ParameterStatus::kNotExcited && take_fitted(name, to);
+  const auto excited = [&](const char* name) {
+    double value = 0.0;
+    return take_excited(parameters, name, value);
   };
-  VehicleParameters<double>& p = vehicle.parameters;
-  const double wheelbase = p.wheelbase();
-  const bool stiff_front = take("C_f", p.C_f), stiff_rear = take("C_r", p.C_r);
-  take("I_z", p.I_z);
-  if (take("a", p.a)) p.b = wheelbase - p.a;
-  take("relaxation_length", vehicle.relaxation_length);
   double C = model.start[DriveUnknown::kShape], E = model.start[DriveUnknown::kCurvature];
-  const bool limited = take_fitted("mu", p.mu);
-  const bool has_shape = take_fitted("C", C) || model.tyre == DriveTyre::kMagicFormula;
-  if (limited && has_shape) {
-    take_fitted("E", E);
+  const bool has_shape = take_fitted(parameters, "C", C) || model.tyre == DriveTyre::kMagicFormula;
+  if (fitted("mu") && has_shape) {
+    take_fitted(parameters, "E", E);
     auto tyres = tyres_by_numbers<SimpleMagicFormulaTyre<double>>(p);
     tyres.front.C = tyres.rear.C = C;
     tyres.front.E = tyres.rear.E = E;
     vehicle.tyres = tyres;
     vehicle.tyre_text = "magic formula";
-  } else if (limited) {
+  } else if (fitted("mu")) {
     vehicle.tyres = tyres_by_numbers<FialaTyre<double>>(p);
     vehicle.tyre_text = "fiala";
-  } else if (stiff_front || stiff_rear) {
+  } else if (excited("C_f") || excited("C_r")) {
     vehicle.tyres = tyres_by_numbers<LinearTyre<double>>(p);
     vehicle.tyre_text = "linear";
   }

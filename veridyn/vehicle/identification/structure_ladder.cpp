@@ -37,11 +37,12 @@ double log_prior_volume(const VehicleProblem& problem, const OutputErrorResult& 
   std::vector<Eigen::Index> known;
   double sum = 0.0;
   for (const DriveUnknown u : kAllDriveUnknowns) {
-    const double variance = fit.raw.covariance(u, u);
+    const auto i = static_cast<Eigen::Index>(u);
+    const double variance = fit.raw.covariance(i, i);
     if (!model.free[u] || !(variance > 0.0) || !std::isfinite(variance)) continue;
-    known.push_back(u);
+    known.push_back(i);
     if (!std::isfinite(model.prior[u])) continue;
-    sum -= std::log(model.prior[u]) + 0.5 * std::pow((fit.raw.theta(u) - model.start[u]) / model.prior[u], 2);
+    sum -= std::log(model.prior[u]) + 0.5 * std::pow((fit.raw.theta(i) - model.start[u]) / model.prior[u], 2);
   }
   if (known.empty()) return sum;
   const Eigen::MatrixXd L = numerics::Cholesky(fit.raw.covariance(known, known)).L();
@@ -53,8 +54,9 @@ double log_prior_volume(const VehicleProblem& problem, const OutputErrorResult& 
 bool ends_at_simpler(DriveStructure structure, const OutputErrorResult& fit) {
   const std::array added{DriveUnknown::kRollGradient,
                          saturates(structure) ? DriveUnknown::kMu : DriveUnknown::kRelaxationLength};
-  return std::ranges::any_of(
-      added, [&](DriveUnknown u) { return fit.raw.parameters[u].status == estimation::ParameterStatus::kAtBound; });
+  return std::ranges::any_of(added, [&](DriveUnknown u) {
+    return fit.raw.parameters[static_cast<std::size_t>(u)].status == estimation::ParameterStatus::kAtBound;
+  });
 }
 
 /// How a fit does, on its own data and on the hold-out.
@@ -106,7 +108,7 @@ std::optional<estimation::Parameter> steer_delay_of(const VehicleProblem& proble
   const OutputErrorResult delayed = estimate_by_output_error(
       with_options(problem, options), equation_error, fit.raw.theta, fit.whitening, SearchEffort::kOnce, progress);
   if (!delayed.raw.usable()) return std::nullopt;
-  return delayed.raw.parameters[DriveUnknown::kSteerDelay];
+  return delayed.raw.parameters[static_cast<std::size_t>(DriveUnknown::kSteerDelay)];
 }
 
 /// The options for a structure. Saturation has no relaxation length where the data did not ask for one.

@@ -56,10 +56,11 @@ std::optional<PartsAgreement> by_output_error(const VehicleProblem& problem, con
     return std::nullopt;
   std::vector<Eigen::Index> both;
   for (const DriveUnknown unknown : kOfTheVehicle) {
-    const auto determined = [unknown](const estimation::OutputErrorEstimate& e) {
-      return e.covariance(unknown, unknown) > 0.0 && std::isfinite(e.covariance(unknown, unknown));
+    const auto i = static_cast<Eigen::Index>(unknown);
+    const auto determined = [i](const estimation::OutputErrorEstimate& e) {
+      return e.covariance(i, i) > 0.0 && std::isfinite(e.covariance(i, i));
     };
-    if (determined(here.raw) && determined(there)) both.push_back(unknown);
+    if (determined(here.raw) && determined(there)) both.push_back(i);
   }
   if (both.empty()) return std::nullopt;
   const Eigen::MatrixXd covariance = here.raw.covariance + there.covariance;
@@ -120,7 +121,7 @@ VehicleEstimate widened(VehicleEstimate estimate, double factor, double signific
   estimate.covariance *= factor;
   if (estimate.given_covariance.size() > 0) estimate.covariance -= (factor - 1.0) * estimate.given_covariance;
   for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
-    const double ratio = estimate.covariance.diagonal()(signed_index(i)) / before(i);
+    const double ratio = estimate.covariance.diagonal()(signed_index(i)) / before(signed_index(i));
     estimation::widen(estimate.parameters[i], ratio, estimate.degrees_of_freedom, significance);
   }
   return estimate;

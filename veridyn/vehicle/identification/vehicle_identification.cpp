@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "veridyn/core/finishing_progress.hpp"
+#include "veridyn/vehicle/identification/estimated_vehicle.hpp"
 #include "veridyn/vehicle/identification/structure_doubt.hpp"
 #include "veridyn/vehicle/identification/structure_ladder.hpp"
 #include "veridyn/vehicle/identification/vehicle_estimates.hpp"
@@ -125,7 +126,8 @@ VehicleIdentification identify_structure(const VehicleProblem& problem,
   out.judgement = std::move(judgement.judgement);
   for (const estimation::Evidence& row : out.checks)
     if (!row.passed()) out.warnings.push_back(row.text);
-  if (out.verdict != estimation::GroupVerdict::kRejected) out.identified = identified_vehicle(problem, *chosen);
+  if (out.verdict != estimation::GroupVerdict::kRejected)
+    out.identified = estimated_parameters(problem.start, chosen->parameters);
   out.estimates = marked(std::move(out.estimates), problem.start, out.verdict);
   return out;
 }

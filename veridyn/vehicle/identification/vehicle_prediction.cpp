@@ -48,21 +48,6 @@ DriveTheta theta_of(const VehicleProblem& problem, const VehicleEstimate& estima
   return theta;
 }
 
-VehicleParameters<double> identified_vehicle(const VehicleProblem& problem, const VehicleEstimate& estimate) {
-  VehicleParameters<double> p = problem.start;
-  const auto take = [&](const char* name, double& to) {
-    const estimation::Parameter* found = estimate.find(name);
-    if (found != nullptr && found->status != estimation::ParameterStatus::kNotExcited) to = found->value;
-  };
-  take("C_f", p.C_f);
-  take("C_r", p.C_r);
-  take("I_z", p.I_z);
-  take("a", p.a);
-  p.b = problem.start.wheelbase() - p.a;
-  if (problem.options.model.tyre != DriveTyre::kLinear) take("mu", p.mu);
-  return p;
-}
-
 DriveValidation with_noisier_inputs(const VehicleProblem& problem, const DriveTheta& theta, const DriveValidation& fit,
                                     Progress& progress) {
   DriveSignals noisier = problem.signals;

@@ -18,10 +18,6 @@ namespace veridyn::vehicle {
 [[nodiscard]] DriveTheta theta_of(const VehicleProblem& problem, const VehicleEstimate& estimate,
                                   const estimation::OutputErrorEstimate* output_error, Progress& progress);
 
-/// The start with what the estimate determines.
-[[nodiscard]] VehicleParameters<double> identified_vehicle(const VehicleProblem& problem,
-                                                           const VehicleEstimate& estimate);
-
 /// What noise of steering and speed does to a prediction over the identification segments: that much noise once more,
 /// and the difference to `fit` as its quantities' fits.
 [[nodiscard]] DriveValidation with_noisier_inputs(const VehicleProblem& problem, const DriveTheta& theta,

@@ -25,7 +25,8 @@ double search_factor(const VehicleProblem& problem, const EquationErrorEstimates
   const OutputErrorProblem as_given = output_error_problem(problem, equation_error);
   double off = 1.0;
   for (const DriveUnknown u : {DriveUnknown::kCf, DriveUnknown::kCr, DriveUnknown::kIz}) {
-    const double q = estimate.theta(u) / as_given.model.parameters()[u].start;
+    const auto i = static_cast<std::size_t>(u);
+    const double q = estimate.theta(static_cast<Eigen::Index>(i)) / as_given.model.parameters()[i].start;
     if (q > 0.0 && std::isfinite(q)) off = std::max(off, std::max(q, 1.0 / q));
   }
   return std::min(1e3, kProfileReach * off);

@@ -113,7 +113,7 @@ double DriveTracker::latency_s() const { return axle_rows_.latency_s(); }
 
 const estimation::RegressionTracker& DriveTracker::regression(TrackedAxle axle) const {
   VERIDYN_ASSERT(started());
-  return trackers_[axle];
+  return trackers_[static_cast<std::size_t>(axle)];
 }
 
 const DriveTrackHistory& DriveTracker::history(TrackedAxle axle) const { return history_[axle]; }
@@ -153,10 +153,11 @@ double DriveTracker::followed_sigma(TrackedAxle axle) const {
 }
 
 double DriveTracker::body_sigma(TrackedAxle axle) const {
-  if (axle == TrackedAxle::kUndersteer) return body_.sigma[axle];
+  const auto i = static_cast<std::size_t>(axle);
+  if (axle == TrackedAxle::kUndersteer) return body_.sigma[i];
   // Where grip has changed, friction may have changed with stiffness, as is assumed, or not.
-  const double saturation = force_power_[axle] > 0.0 ? saturated_power_[axle] / force_power_[axle] : 0.0;
-  return std::abs(value(axle)) * std::hypot(body_.sigma[axle], saturation * (1.0 - grip_[axle]));
+  const double saturation = force_power_[i] > 0.0 ? saturated_power_[i] / force_power_[i] : 0.0;
+  return std::abs(value(axle)) * std::hypot(body_.sigma[i], saturation * (1.0 - grip_[i]));
 }
 
 double DriveTracker::sigma(TrackedAxle axle) const {
@@ -195,7 +196,8 @@ void DriveTracker::follow_grip() {
   for (const TrackedAxle axle : {TrackedAxle::kFront, TrackedAxle::kRear}) {
     const estimation::RecursiveRegression& r = regression(axle).regression();
     if (!r.usable() || r.excited_directions() < r.parameters()) continue;
-    grip_[axle] = std::clamp(value(axle) / known[axle], kLeast, kMost);
+    const auto i = static_cast<std::size_t>(axle);
+    grip_[i] = std::clamp(value(axle) / known[i], kLeast, kMost);
   }
   axle_rows_.set_grip(grip_);
 }
@@ -215,7 +217,7 @@ void DriveTracker::take_rows(std::vector<DriveChange>& found) {
   const AxleRowSet rows = axle_rows_.rows();
   weigh_saturation(rows);
   const auto feed = [&](TrackedAxle axle, std::span<const double> x, double z) {
-    if (auto change = trackers_[axle].update(rows.time, x, z)) {
+    if (auto change = trackers_[static_cast<std::size_t>(axle)].update(rows.time, x, z)) {
       // Of the stiffness, whose inverse is followed.
       if (change->kind == estimation::ChangeKind::kParameter) change->shift = 1.0 / (1.0 + change->shift) - 1.0;
       changes_.push_back({axle, *change});
@@ -307,7 +309,8 @@ estimation::Estimate DriveTracker::estimate(const std::string& subject,
   estimation::Estimate out;
   out.subject = subject;
   out.method = fmt::format("{} on line", estimation::to_string(options_.method));
-  out.covariance = Eigen::MatrixXd::Zero(kTrackedAxles, kTrackedAxles);
+  out.covariance =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(kTrackedAxles), static_cast<Eigen::Index>(kTrackedAxles));
   std::vector<std::string> followed, held;
   for (const TrackedAxle axle : kAllTrackedAxles) {
     const double v = value(axle);
@@ -337,7 +340,8 @@ estimation::Estimate DriveTracker::estimate(const std::string& subject,
     }
     p.low95 = v - half * p.sigma;
     p.high95 = v + half * p.sigma;
-    out.covariance(axle, axle) = p.sigma * p.sigma;
+    const auto at = static_cast<Eigen::Index>(axle);
+    out.covariance(at, at) = p.sigma * p.sigma;
     out.parameters.push_back(std::move(p));
   }
   if (started()) out.evidence.push_back(body_row(body_));
