@@ -1,5 +1,7 @@
 #include "veridyn/recording/study_data.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstring>
 #include <numbers>
@@ -11,10 +13,13 @@
 namespace veridyn::recording {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::Contains;
+using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using testing::message_of;
+using ::testing::SizeIs;
 
 class StudyData : public ::testing::Test {
  protected:
@@ -206,6 +211,36 @@ TEST_F(StudyData, CallsPartsOfOneFileByWhereTheyBegin) {
   ASSERT_EQ(runs.size(), 2U);
   EXPECT_EQ(runs[0].name, "a.csv from 0 s");
   EXPECT_EQ(runs[1].name, "a.csv from 2 s");
+}
+
+/// A table of two flights whose clock restarts: 30 rows of 1, then 20 rows of 2.
+std::string restarting_table() {
+  std::string text = "time,v\n";
+  for (int i = 0; i < 50; ++i) text += fmt::format("{},{}\n", 0.5 * (i < 30 ? i : i - 30), i < 30 ? 1 : 2);
+  return text;
+}
+
+TEST_F(StudyData, ReadsOnePartOfATableOrAFolderWhoseClockRestarts) {
+  write("a.csv", restarting_table());
+  std::filesystem::create_directories(folder / "log");
+  write("log/IMU.csv", restarting_table());
+  write("log/GPS.csv", restarting_table());
+  EXPECT_THAT(read("file = 'a.csv'\n").at("v").value, Each(1.0)) << "the longest";
+  EXPECT_THAT(read("file = 'a.csv'\npart = 2\n").at("v").value, AllOf(SizeIs(20), Each(2.0)));
+  EXPECT_THAT(message_of([&] { (void)read("file = 'a.csv'\npart = 3\n"); }), HasSubstr("a.csv: has no part 3"));
+  const Recording both = read("file = 'log'\npart = 2\n");
+  EXPECT_THAT(both.at("IMU.v").value, AllOf(SizeIs(20), Each(2.0)));
+  EXPECT_THAT(both.at("GPS.v").value, AllOf(SizeIs(20), Each(2.0)));
+}
+
+TEST_F(StudyData, CallsPartsOfOneFileByTheirNumbers) {
+  write("a.csv", restarting_table());
+  const std::vector<StudyRecording> runs = recordings_of(
+      "[[data.run]]\nfile = 'a.csv'\npart = 1\n[[data.run]]\nfile = 'a.csv'\npart = 2\nholdout = true\n", folder);
+  ASSERT_EQ(runs.size(), 2U);
+  EXPECT_EQ(runs[0].name, "a.csv part 1");
+  EXPECT_EQ(runs[1].name, "a.csv part 2");
+  EXPECT_THAT(runs[1].recording.at("v").value, AllOf(SizeIs(20), Each(2.0)));
 }
 
 TEST_F(StudyData, OfOneFileIsOneRecordingWithoutAName) {

@@ -247,10 +247,12 @@ void distinguish(std::vector<StudyRecording>& runs, const StudyTable& data) {
   std::vector<std::string> longer;
   for (const StudyRecording& run : runs) {
     std::string name = run.name;
-    if (count(name) > 1 && run.own.has("from"))
-      name += fmt::format(" from {:g} s", run.own.number("from", "s"));
-    else if (count(name) > 1)
+    if (count(name) > 1 && (run.own.has("from") || run.own.has("part"))) {
+      if (run.own.has("part")) name += fmt::format(" part {}", run.own.integer("part"));
+      if (run.own.has("from")) name += fmt::format(" from {:g} s", run.own.number("from", "s"));
+    } else if (count(name) > 1) {
       name = (run.files.front().parent_path().filename() / run.files.front().filename()).string();
+    }
     longer.push_back(std::move(name));
   }
   for (std::size_t i = 0; i < runs.size(); ++i) runs[i].name = longer[i];

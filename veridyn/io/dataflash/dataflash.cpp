@@ -14,6 +14,7 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/io/dataflash/dataflash_schema.hpp"
+#include "veridyn/io/log/clock_restarts.hpp"
 #include "veridyn/io/log/gather.hpp"
 #include "veridyn/io/log/mapped_file.hpp"
 #include "veridyn/io/log/time_stamps.hpp"
@@ -115,8 +116,10 @@ class Indexer {
       at = next;
     }
     if (cut) damage.notes.emplace_back("the log ends in the middle of a record");
+    restarts_.finish();
   }
 
+  [[nodiscard]] const ClockRestarts& restarts() const { return restarts_; }
   [[nodiscard]] bool found_format() const { return formats_read_ > 0; }
   std::vector<Layout>& layouts() { return layouts_; }
 
@@ -170,7 +173,9 @@ class Indexer {
     const char* const record = data_.data() + at;
     layout.records.push_back(at);
     if (layout.time) {
-      clock_.tick(layout.time->scale * load_stamp(record, layout.columns[layout.time->column]));
+      const double stamp = layout.time->scale * load_stamp(record, layout.columns[layout.time->column]);
+      clock_.tick(stamp);
+      restarts_.add(stamp, at);
     } else {
       layout.borrowed_time.push_back(clock_.now());
     }
@@ -213,6 +218,7 @@ class Indexer {
   std::array<std::size_t, 256> current_{};
   std::vector<Layout> layouts_;
   RunningClock clock_;
+  ClockRestarts restarts_;
   std::size_t formats_read_ = 0;
   bool looked_ahead_ = false;
 };
@@ -295,7 +301,8 @@ GatherType gather_type(char character) {
 }
 
 LogTopic decode(std::string_view data, const Layout& layout, std::vector<std::uint64_t> records,
-                std::vector<double> borrowed_time, std::optional<std::size_t> instance_column) {
+                std::vector<double> borrowed_time, std::optional<std::size_t> instance_column,
+                const ClockRestarts& restarts) {
   LogTopic topic;
   topic.name = layout.format.name;
   std::vector<double> stamps = std::move(borrowed_time);
@@ -306,6 +313,7 @@ LogTopic decode(std::string_view data, const Layout& layout, std::vector<std::ui
       stamps[i] = layout.time->scale * load_stamp(data.data() + records[i], column);
     }
   }
+  restarts.shift(stamps, records);
   OrderedStamps ordered = order_stamps(std::move(stamps));
   if (!ordered.row.empty() || ordered.time.empty()) {
     std::vector<std::uint64_t> chosen;
@@ -408,15 +416,17 @@ Log read_dataflash(std::string_view bytes, std::string source) {
     if (instance_column) {
       auto parts = split_instances(bytes, layout, *instance_column);
       for (auto& [instance, part] : parts) {
-        log.topics.push_back(decode(bytes, layout, std::move(part.first), std::move(part.second), instance_column));
+        log.topics.push_back(
+            decode(bytes, layout, std::move(part.first), std::move(part.second), instance_column, index.restarts()));
         log.topics.back().instance = instance;
       }
       if (!parts.empty()) continue;
     }
-    log.topics.push_back(
-        decode(bytes, layout, std::move(layout.records), std::move(layout.borrowed_time), std::nullopt));
+    log.topics.push_back(decode(bytes, layout, std::move(layout.records), std::move(layout.borrowed_time), std::nullopt,
+                                index.restarts()));
   }
   read_dataflash_events(log);
+  index.restarts().report_to(log);
   internal::finish(log);
   return log;
 }

@@ -21,7 +21,8 @@ namespace veridyn::io {
 ///   are counted as lost, each stretch as at least one record.
 /// - Units come from FMTU, UNIT and MULT, otherwise from a table of the standard messages. Columns marked '#' split a
 ///   message into instances.
-/// - Times: see `order_stamps`; messages without a stamp take that of the record before them.
+/// - Times: see `order_stamps`; messages without a stamp take that of the record before them. Where the clock restarts
+///   (files of several flights) they go on (`ClockRestarts`).
 /// Cost: one pass over the file for the index and one for the columns; memory about the size of the file. No record
 /// throws.
 /// @throws InputError when there is not one FMT record in the bytes.

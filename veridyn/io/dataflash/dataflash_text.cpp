@@ -14,6 +14,7 @@
 #include "veridyn/core/index.hpp"
 #include "veridyn/core/text.hpp"
 #include "veridyn/io/dataflash/dataflash_schema.hpp"
+#include "veridyn/io/log/clock_restarts.hpp"
 #include "veridyn/io/log/mapped_file.hpp"
 #include "veridyn/io/log/time_stamps.hpp"
 
@@ -47,6 +48,7 @@ struct TextTable {
   std::vector<std::vector<double>> numbers;  ///< by column; empty for texts
   std::vector<TextColumn> texts;             ///< by column; empty for numbers
   std::vector<double> stamps;                ///< [s]
+  std::vector<std::uint64_t> places;         ///< which rows of the log they are
 };
 
 /// View of the text of a log, read line by line into tables.
@@ -72,6 +74,9 @@ class TextReader {
       const auto found = index_.find(cells[0]);
       if (found == index_.end() || !take(tables_[found->second], cells)) count_lost(line, last);
     }
+    restarts_.finish();
+    for (TextTable& table : tables_) restarts_.shift(table.stamps, table.places);
+    restarts_.report_to(log_);
   }
 
   std::vector<TextTable>& tables() { return tables_; }
@@ -130,8 +135,10 @@ class TextReader {
     if (table.time) {
       stamp = table.time->scale * values_[table.time->column];
       if (std::isfinite(stamp)) clock_ = stamp;
+      restarts_.add(stamp, rows_);
     }
     table.stamps.push_back(stamp);
+    table.places.push_back(rows_++);
     for (std::size_t i = 0; i < count; ++i) {
       const char type = table.columns[i].type;
       if (is_text_type(type) || type == 'a' || type == 'M' || type == 'b') table.texts[i].push_back(cells[i + 1]);
@@ -160,6 +167,8 @@ class TextReader {
   std::vector<TextTable> tables_;
   std::map<std::string, std::size_t, std::less<>> index_;
   std::vector<double> values_;
+  ClockRestarts restarts_;
+  std::uint64_t rows_ = 0;
   double clock_ = 0.0;
 };
 

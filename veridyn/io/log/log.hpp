@@ -67,6 +67,7 @@ struct Log {
   LogDamage damage;
   std::vector<double> restarts;  ///< when the vehicle or its clock restarted, times going on [s]
   std::size_t part = 0;          ///< which part of its file it is, from 1 (`log_parts.hpp`); 0: all of it
+  std::size_t parts = 0;         ///< of a table whose clock restarts: how many parts the file has
 
   [[nodiscard]] const LogTopic* find(std::string_view name, int instance = 0) const;
   /// Rows of all instances of a topic.

@@ -354,6 +354,7 @@ class CsvParser {
     const std::size_t read = internal::choose_part(parts, stamps, options_.part, log_.source);
     log_.damage.notes.push_back(internal::parts_in_words(parts, stamps, read));
     log_.part = read + 1;
+    log_.parts = parts.size();
     for (Growing& column : columns_) column.keep(parts[read]);
     row_count_ = parts[read].end - parts[read].begin;
   }

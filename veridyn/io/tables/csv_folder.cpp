@@ -38,6 +38,37 @@ std::vector<std::filesystem::path> tables_in(const std::filesystem::path& folder
   return paths;
 }
 
+/// A table of the folder as it was read.
+struct FolderTable {
+  std::filesystem::path path;
+  std::string name;
+  Log log;
+};
+
+/// Where clocks restart, leaves the same part of every table: the one that is asked for, or the longest of the largest
+/// table. Tables that do not have as many parts as that are left out: which part they are of is not known.
+void read_one_part(std::vector<FolderTable>& tables, const TableOptions& options, Log& whole) {
+  const auto rows = [](const FolderTable& t) { return t.log.parts > 0 ? t.log.topics.front().size() : 0; };
+  const auto largest = std::ranges::max_element(tables, {}, rows);
+  if (largest == tables.end() || rows(*largest) == 0) return;
+  whole.part = largest->log.part;
+  whole.parts = largest->log.parts;
+  TableOptions same = options;
+  same.part = whole.part;
+  std::erase_if(tables, [&](const FolderTable& t) {
+    if (t.log.parts == whole.parts) return false;
+    whole.damage.notes.push_back(
+        t.log.parts == 0 ? fmt::format("left out: {}: its clock does not restart as those of the other tables do; "
+                                       "which of their {} parts it is of is not known",
+                                       t.path.string(), whole.parts)
+                         : fmt::format("left out: {}: has {} parts, other tables have {}", t.path.string(), t.log.parts,
+                                       whole.parts));
+    return true;
+  });
+  for (FolderTable& t : tables)
+    if (t.log.part != whole.part) t.log = read_csv_file(t.path, same);
+}
+
 }  // namespace
 
 std::string table_name(const std::filesystem::path& path, const std::string& prefix) {
@@ -88,24 +119,28 @@ Log read_csv_folder(const std::filesystem::path& folder, const TableOptions& opt
   whole.source = folder.string();
   whole.format = "folder of CSV";
   std::string first_refusal;
+  std::vector<FolderTable> tables;
   for (const std::filesystem::path& path : paths) {
-    const std::string name = table_name(path, prefix);
     try {
-      Log part = read_csv_file(path, options);
-      if (whole.frame == Frame::kUnspecified) whole.frame = part.frame;
-      whole.part = std::max(whole.part, part.part);
-      for (LogTopic& topic : part.topics) {
-        topic.name = name;
-        whole.topics.push_back(std::move(topic));
-      }
-      for (const auto& [key, value] : part.information)
-        whole.information.emplace(fmt::format("{}: {}", name, key), value);
-      whole.damage.records_lost += part.damage.records_lost;
-      for (const std::string& note : part.damage.notes) whole.damage.notes.push_back(fmt::format("{}: {}", name, note));
+      tables.push_back({path, table_name(path, prefix), read_csv_file(path, options)});
     } catch (const InputError& refusal) {
       if (first_refusal.empty()) first_refusal = refusal.what();
       whole.damage.notes.push_back(fmt::format("left out: {}", refusal.what()));
     }
+  }
+  read_one_part(tables, options, whole);
+  for (FolderTable& table : tables) {
+    Log& part = table.log;
+    if (whole.frame == Frame::kUnspecified) whole.frame = part.frame;
+    for (LogTopic& topic : part.topics) {
+      topic.name = table.name;
+      whole.topics.push_back(std::move(topic));
+    }
+    for (const auto& [key, value] : part.information)
+      whole.information.emplace(fmt::format("{}: {}", table.name, key), value);
+    whole.damage.records_lost += part.damage.records_lost;
+    for (const std::string& note : part.damage.notes)
+      whole.damage.notes.push_back(fmt::format("{}: {}", table.name, note));
   }
   if (whole.topics.empty())
     throw InputError(whole.source, fmt::format("holds no table of a recording: {}", first_refusal));

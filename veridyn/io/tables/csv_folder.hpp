@@ -21,7 +21,8 @@ namespace veridyn::io {
 [[nodiscard]] bool is_csv_folder(const std::filesystem::path& folder);
 
 /// The tables of a folder as the topics of one log, each with its own stamps, as ulog2csv and others export logs. Those
-/// that are no recording (without stamps) are left out with a note.
+/// that are no recording (without stamps) are left out with a note. Where their clocks restart the same part of all is
+/// read: `options.part`, else the longest of the table with the most rows.
 /// @throws InputError where none is one: why the first is not
 [[nodiscard]] Log read_csv_folder(const std::filesystem::path& folder, const TableOptions& options = {});
 

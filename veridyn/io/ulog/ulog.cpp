@@ -7,12 +7,16 @@
 #include <cstring>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/io/log/clock_restarts.hpp"
 #include "veridyn/io/log/mapped_file.hpp"
 #include "veridyn/io/log/time_stamps.hpp"
 #include "veridyn/io/ulog/px4_units.hpp"
 #include "veridyn/io/ulog/ulog_format.hpp"
+#include "veridyn/io/ulog/ulog_key.hpp"
+#include "veridyn/io/ulog/ulog_story.hpp"
 
 namespace veridyn::io {
 namespace {
@@ -32,44 +36,27 @@ T load(const char* from) {
 struct Subscription {
   std::string name;
   int instance = 0;
+  std::size_t session = 0;
   std::vector<std::uint64_t> records;  ///< where the data begin, after the id
   std::vector<std::uint16_t> sizes;    ///< bytes of data
+  std::optional<ULogField> stamp;      ///< once its format is known
+  std::size_t formats_tried = 0;       ///< how many formats were known when it was looked for
 };
 
-/// A typed key of information and parameter messages: "float NAME", "char[12] NAME".
-struct Key {
-  std::string type;
-  std::string name;
-  std::string_view value;
-};
-
-std::optional<Key> parse_key(std::string_view body) {
-  if (body.empty()) return std::nullopt;
-  const auto length = static_cast<unsigned char>(body[0]);
-  if (body.size() < 1U + length) return std::nullopt;
-  const std::string_view key = body.substr(1, length);
-  const std::size_t blank = key.find(' ');
-  if (blank == std::string_view::npos || blank == 0 || blank + 1 == key.size()) return std::nullopt;
-  return Key{internal::printable(key.substr(0, blank)), internal::printable(key.substr(blank + 1)),
-             body.substr(1U + length)};
+const ULogField* find_stamp(const ULogLayout& layout) {
+  for (const ULogField& field : layout.fields) {
+    if (field.name == "timestamp" && (field.type == GatherType::kUint64 || field.type == GatherType::kUint32)) {
+      return &field;
+    }
+  }
+  return nullptr;
 }
 
-std::optional<double> number_of(const Key& key) {
-  const auto as = [&]<typename T>(T) -> std::optional<double> {
-    if (key.value.size() < sizeof(T)) return std::nullopt;
-    return static_cast<double>(load<T>(key.value.data()));
-  };
-  if (key.type == "float") return as(float{});
-  if (key.type == "double") return as(double{});
-  if (key.type == "int32_t") return as(std::int32_t{});
-  if (key.type == "uint32_t") return as(std::uint32_t{});
-  if (key.type == "int64_t") return as(std::int64_t{});
-  if (key.type == "uint64_t") return as(std::uint64_t{});
-  if (key.type == "int16_t") return as(std::int16_t{});
-  if (key.type == "uint16_t") return as(std::uint16_t{});
-  if (key.type == "int8_t") return as(std::int8_t{});
-  if (key.type == "uint8_t" || key.type == "bool") return as(std::uint8_t{});
-  return std::nullopt;
+/// In seconds.
+double load_stamp(const char* data, const ULogField& stamp) {
+  const char* const from = data + stamp.offset;
+  return 1e-6 * (stamp.type == GatherType::kUint64 ? static_cast<double>(load<std::uint64_t>(from))
+                                                   : static_cast<double>(load<std::uint32_t>(from)));
 }
 
 /// View of the bytes of a log, walked from message to message.
@@ -84,6 +71,8 @@ class Walker {
       walk(begin, end);
       begin = end;
     }
+    restarts_.finish();
+    for (std::size_t i = 0; i < log_.events.size(); ++i) log_.events[i].time += restarts_.shift_at(event_places_[i]);
     if (unknown_ids_ > 0) {
       log_.damage.notes.push_back(fmt::format("{} data messages of ids without a subscription", unknown_ids_));
     }
@@ -91,7 +80,9 @@ class Walker {
   }
 
   std::vector<Subscription>& subscriptions() { return subscriptions_; }
-  [[nodiscard]] const ULogFormats& formats() const { return formats_; }
+  /// Of each session: a log that follows another one in the file has its own.
+  [[nodiscard]] const std::vector<ULogFormats>& formats() const { return formats_; }
+  [[nodiscard]] const ClockRestarts& restarts() const { return restarts_; }
 
  private:
   /// Ends of the stretches of messages: data appended after a crash start at the offsets in the flag message, wherever
@@ -120,10 +111,19 @@ class Walker {
   }
 
   [[nodiscard]] std::size_t size_at(std::size_t at) const { return load<std::uint16_t>(data_.data() + at); }
+  /// Whether another log begins here.
+  [[nodiscard]] bool is_header(std::size_t at, std::size_t end) const {
+    return at + kHeader <= end && data_.substr(at, kULogMagic.size()) == kULogMagic;
+  }
+  /// Where what begins here ends: a message or a header.
+  [[nodiscard]] std::size_t next_of(std::size_t at, std::size_t end) const {
+    return at + (is_header(at, end) ? kHeader : 3 + size_at(at));
+  }
 
-  /// Whether a message of a known type that makes sense by itself stands here.
+  /// Whether a message of a known type that makes sense by itself, or a header, stands here.
   [[nodiscard]] bool plausible(std::size_t at, std::size_t end) const {
     if (at + 3 > end) return false;
+    if (is_header(at, end)) return true;
     const std::size_t size = size_at(at);
     if (size == 0 || at + 3 + size > end) return false;
     const char* const body = data_.data() + at + 3;
@@ -150,7 +150,7 @@ class Walker {
       case 'S':
         return size == 8 && std::string_view(body, 8) == kSync;
       case 'B':
-        return at == kHeader && size >= 40;
+        return is_header(at - kHeader, end) && size >= 40;
       default:
         return false;
     }
@@ -160,7 +160,7 @@ class Walker {
     for (int i = 0; i < length; ++i) {
       if (at == end && i > 0) return true;
       if (!plausible(at, end)) return false;
-      at += 3 + size_at(at);
+      at = next_of(at, end);
     }
     return true;
   }
@@ -182,7 +182,11 @@ class Walker {
     std::size_t at = begin;
     while (at < end) {
       const bool fits = at + 3 <= end && at + 3 + size_at(at) <= end;
-      if (plausible(at, end)) {
+      if (is_header(at, end)) {
+        formats_.emplace_back();
+        data_begun_ = false;
+        at += kHeader;
+      } else if (plausible(at, end)) {
         const std::size_t next = at + 3 + size_at(at);
         if (next != end && !plausible(next, end) && !skippable(next, end)) {
           // A damaged length leads anywhere: then messages begin inside of this one.
@@ -228,17 +232,19 @@ class Walker {
         subscription.records.push_back(at + 5);
         subscription.sizes.push_back(static_cast<std::uint16_t>(body.size() - 2));
         data_begun_ = true;
+        tick(subscription, body.substr(2), at);
         break;
       }
       case 'F': {
         const std::size_t colon = body.find(':');
-        formats_.emplace(std::string(body.substr(0, colon)), std::string(body.substr(colon + 1)));
+        formats_.back().emplace(std::string(body.substr(0, colon)), std::string(body.substr(colon + 1)));
         break;
       }
       case 'A': {
         // Ids are counted up from 0; damage must not make thousands of topics.
         if (subscriptions_.size() >= 4096) break;
         Subscription subscription;
+        subscription.session = formats_.size() - 1;
         subscription.instance = static_cast<unsigned char>(body[0]);
         subscription.name = std::string(body.substr(3, body.substr(3).find('\0')));
         subscription_of_[load<std::uint16_t>(body.data() + 1)] = static_cast<std::int32_t>(subscriptions_.size());
@@ -255,16 +261,16 @@ class Walker {
         take_information(body.substr(1), true, body[0] != 0);
         break;
       case 'P':
-        take_parameter(body);
+        take_parameter(body, at);
         break;
       case 'Q':
         take_default(body);
         break;
       case 'L':
-        take_text(body, 1);
+        take_text(body, 1, at);
         break;
       case 'C':
-        take_text(body, 3);
+        take_text(body, 3, at);
         break;
       case 'O':
         ++log_.damage.dropouts;
@@ -275,13 +281,32 @@ class Walker {
     }
   }
 
+  /// Follows the clock of the log.
+  void tick(Subscription& subscription, std::string_view data, std::size_t at) {
+    const ULogFormats& formats = formats_[subscription.session];
+    // Formats may stand after the data.
+    if (!subscription.stamp && subscription.formats_tried != formats.size()) {
+      subscription.formats_tried = formats.size();
+      const auto layout = resolve_ulog_format(formats, subscription.name);
+      const ULogField* const stamp = layout ? find_stamp(*layout) : nullptr;
+      if (stamp != nullptr) subscription.stamp = *stamp;
+    }
+    if (!subscription.stamp || data.size() < subscription.stamp->offset + subscription.stamp->size) return;
+    restarts_.add(load_stamp(data.data(), *subscription.stamp), at);
+  }
+
+  void take_event(Event event, std::size_t at) {
+    log_.events.push_back(std::move(event));
+    event_places_.push_back(at);
+  }
+
   void take_information(std::string_view body, bool multiple, bool continued) {
-    const auto key = parse_key(body);
+    const auto key = parse_ulog_key(body);
     if (!key) return;
     std::string text;
     if (key->type.rfind("char", 0) == 0) {
       text = internal::printable(key->value);
-    } else if (const auto number = number_of(*key)) {
+    } else if (const auto number = ulog_number(*key)) {
       text = fmt::format("{:.17g}", *number);
     } else {
       return;
@@ -295,54 +320,48 @@ class Walker {
     }
   }
 
-  void take_parameter(std::string_view body) {
-    const auto key = parse_key(body);
+  void take_parameter(std::string_view body, std::size_t at) {
+    const auto key = parse_ulog_key(body);
     if (!key) return;
-    const auto number = number_of(*key);
+    const auto number = ulog_number(*key);
     if (!number) return;
     const auto found = log_.parameters.find(key->name);
     if (data_begun_ && found != log_.parameters.end() && found->second != *number) {
-      log_.events.push_back({last_text_time_, "parameter", fmt::format("{} = {:.9g}", key->name, *number)});
+      take_event({last_text_time_, "parameter", fmt::format("{} = {:.9g}", key->name, *number)}, at);
     }
     log_.parameters[key->name] = *number;
   }
 
   void take_default(std::string_view body) {
-    const auto key = parse_key(body.substr(1));
+    const auto key = parse_ulog_key(body.substr(1));
     if (!key) return;
     // Bit 0: default of the system, bit 1: of this airframe, which is the one that holds.
     const bool airframe = (static_cast<unsigned char>(body[0]) & 2U) != 0;
-    const auto number = number_of(*key);
+    const auto number = ulog_number(*key);
     if (number && (airframe || !log_.default_parameters.contains(key->name))) {
       log_.default_parameters[key->name] = *number;
     }
   }
 
-  void take_text(std::string_view body, std::size_t stamp_at) {
+  void take_text(std::string_view body, std::size_t stamp_at, std::size_t at) {
     const double time = 1e-6 * static_cast<double>(load<std::uint64_t>(body.data() + stamp_at));
     last_text_time_ = time;
-    log_.events.push_back({time, "message", internal::printable(body.substr(stamp_at + 8))});
+    restarts_.add(time, at);
+    take_event({time, "message", internal::printable(body.substr(stamp_at + 8))}, at);
   }
 
   std::string_view data_;
   Log& log_;
   std::vector<std::int32_t> subscription_of_;
   std::vector<Subscription> subscriptions_;
-  ULogFormats formats_;
+  std::vector<ULogFormats> formats_{1};
+  ClockRestarts restarts_;
+  std::vector<std::uint64_t> event_places_;  // where the events stand
   bool data_begun_ = false;
   double last_text_time_ = 0.0;
   std::size_t unknown_ids_ = 0;
   std::size_t unknown_types_ = 0;
 };
-
-const ULogField* find_stamp(const ULogLayout& layout) {
-  for (const ULogField& field : layout.fields) {
-    if (field.name == "timestamp" && (field.type == GatherType::kUint64 || field.type == GatherType::kUint32)) {
-      return &field;
-    }
-  }
-  return nullptr;
-}
 
 /// The records of a subscription that are long enough; the others are counted.
 std::vector<std::uint64_t> sound_records(Subscription& subscription, const ULogLayout& layout, Log& log) {
@@ -359,7 +378,8 @@ std::vector<std::uint64_t> sound_records(Subscription& subscription, const ULogL
   return std::move(subscription.records);
 }
 
-LogTopic decode(std::string_view data, Subscription& subscription, const ULogLayout& layout, Log& log) {
+LogTopic decode(std::string_view data, Subscription& subscription, const ULogLayout& layout,
+                const ClockRestarts& restarts, Log& log) {
   LogTopic topic;
   topic.name = internal::printable(subscription.name);
   topic.instance = subscription.instance;
@@ -367,11 +387,8 @@ LogTopic decode(std::string_view data, Subscription& subscription, const ULogLay
   const ULogField* const stamp = find_stamp(layout);
   if (stamp != nullptr) {
     std::vector<double> stamps(records.size());
-    for (std::size_t i = 0; i < records.size(); ++i) {
-      const char* const from = data.data() + records[i] + stamp->offset;
-      stamps[i] = 1e-6 * (stamp->type == GatherType::kUint64 ? static_cast<double>(load<std::uint64_t>(from))
-                                                             : static_cast<double>(load<std::uint32_t>(from)));
-    }
+    for (std::size_t i = 0; i < records.size(); ++i) stamps[i] = load_stamp(data.data() + records[i], *stamp);
+    restarts.shift(stamps, records);
     OrderedStamps ordered = order_stamps(std::move(stamps));
     if (!ordered.row.empty() || ordered.time.empty()) {
       std::vector<std::uint64_t> chosen;
@@ -403,32 +420,30 @@ LogTopic decode(std::string_view data, Subscription& subscription, const ULogLay
   return topic;
 }
 
-// nav_state and arming_state of PX4's vehicle_status.msg.
-void read_ulog_events(Log& log) {
-  static const std::map<int, const char*> modes{{0, "MANUAL"},         {1, "ALTCTL"},      {2, "POSCTL"},
-                                                {3, "AUTO_MISSION"},   {4, "AUTO_LOITER"}, {5, "AUTO_RTL"},
-                                                {10, "ACRO"},          {12, "DESCEND"},    {13, "TERMINATION"},
-                                                {14, "OFFBOARD"},      {15, "STABILIZED"}, {16, "RATTITUDE"},
-                                                {17, "AUTO_TAKEOFF"},  {18, "AUTO_LAND"},  {19, "AUTO_FOLLOW_TARGET"},
-                                                {20, "AUTO_PRECLAND"}, {21, "ORBIT"},      {22, "AUTO_VTOL_TAKEOFF"}};
-  const LogTopic* status = log.find("vehicle_status");
-  if (status == nullptr || !status->time) return;
-  const LogField* mode = status->find("nav_state");
-  const LogField* arming = status->find("arming_state");
-  double last_mode = -1.0;
-  int last_armed = -1;
-  for (std::size_t i = 0; i < status->size(); ++i) {
-    const double time = (*status->time)[i];
-    if (mode != nullptr && !mode->values.is_text() && mode->value(i) != last_mode) {
-      last_mode = mode->value(i);
-      const auto found = modes.find(static_cast<int>(std::clamp(last_mode, -1.0, 1e6)));
-      log.events.push_back({time, "mode", found == modes.end() ? fmt::format("{:.0f}", last_mode) : found->second});
-    }
-    if (arming != nullptr && !arming->values.is_text()) {
-      const int armed = arming->value(i) == 2.0 ? 1 : 0;
-      if (armed != last_armed) log.events.push_back({time, "armed", armed == 1 ? "armed" : "disarmed"});
-      last_armed = armed;
-    }
+/// Of each topic in each session; nothing where it is not defined.
+using Layouts = std::map<std::pair<std::size_t, std::string>, std::optional<ULogLayout>>;
+
+Layouts layouts_of(Walker& walker) {
+  Layouts layouts;
+  for (const Subscription& s : walker.subscriptions()) {
+    const auto [place, added] = layouts.try_emplace({s.session, s.name});
+    if (added) place->second = resolve_ulog_format(walker.formats()[s.session], s.name);
+  }
+  return layouts;
+}
+
+/// Makes one topic of those that several logs in one file have alike.
+void join_sessions(std::vector<Subscription>& subscriptions, const Layouts& layouts) {
+  std::map<std::pair<std::string, int>, Subscription*> first;
+  for (Subscription& s : subscriptions) {
+    const auto [place, added] = first.try_emplace({s.name, s.instance}, &s);
+    Subscription& before = *place->second;
+    if (added || before.session == s.session) continue;
+    if (layouts.at({before.session, s.name}) != layouts.at({s.session, s.name})) continue;
+    before.records.insert(before.records.end(), s.records.begin(), s.records.end());
+    before.sizes.insert(before.sizes.end(), s.sizes.begin(), s.sizes.end());
+    s.records.clear();
+    s.sizes.clear();
   }
 }
 
@@ -447,25 +462,24 @@ Log read_ulog(std::string_view bytes, std::string source) {
   }
   Walker walker(bytes, log);
   walker.run();
-  std::map<std::string, std::optional<ULogLayout>, std::less<>> layouts;
+  const Layouts layouts = layouts_of(walker);
+  join_sessions(walker.subscriptions(), layouts);
   std::set<std::string> undefined;
   for (Subscription& subscription : walker.subscriptions()) {
-    auto layout = layouts.find(subscription.name);
-    if (layout == layouts.end()) {
-      layout = layouts.emplace(subscription.name, resolve_ulog_format(walker.formats(), subscription.name)).first;
-    }
-    if (!layout->second) {
-      if (subscription.records.empty()) continue;
+    if (subscription.records.empty()) continue;
+    const std::optional<ULogLayout>& layout = layouts.at({subscription.session, subscription.name});
+    if (!layout) {
       log.damage.records_lost += subscription.records.size();
       undefined.insert(internal::printable(subscription.name));
       continue;
     }
-    if (!subscription.records.empty()) log.topics.push_back(decode(bytes, subscription, *layout->second, log));
+    log.topics.push_back(decode(bytes, subscription, *layout, walker.restarts(), log));
   }
   if (!undefined.empty()) {
     log.damage.notes.push_back(fmt::format("topics without a usable format: {}", fmt::join(undefined, ", ")));
   }
   read_ulog_events(log);
+  walker.restarts().report_to(log);
   internal::finish(log);
   return log;
 }

@@ -21,7 +21,9 @@ namespace veridyn::io {
 ///   that were not subscribed, are left out and counted; longer ones are cut.
 /// - After damage the reader goes on where several sound messages follow each other.
 /// - ULog holds no units: see `px4_unit`.
-/// Times are `timestamp` [s] since the autopilot started; see `order_stamps`.
+/// - Logs one after the other in a file, each with its header, are one: topics that they have alike go on.
+/// Times are `timestamp` [s] since the autopilot started; see `order_stamps`, and `ClockRestarts` where it starts
+/// again.
 /// @throws InputError when the magic is missing, the header is cut, or an incompatible flag is set that this reader
 /// does not know (every bit but that of appended data).
 [[nodiscard]] Log read_ulog(std::string_view bytes, std::string source);

@@ -18,12 +18,16 @@ struct ULogField {
   GatherType type = GatherType::kUint8;
   std::uint32_t offset = 0;  ///< bytes from the start of the data
   std::uint32_t size = 0;    ///< bytes
+
+  friend bool operator==(const ULogField&, const ULogField&) = default;
 };
 
 /// A topic's fields and the bytes that its data must have at least (padding at the end is not logged).
 struct ULogLayout {
   std::vector<ULogField> fields;
   std::uint32_t size = 0;
+
+  friend bool operator==(const ULogLayout&, const ULogLayout&) = default;
 };
 
 /// The formats of a ULog by name, each "type name;type[n] name;...".
