@@ -54,6 +54,42 @@ TEST(Mat, RefusesAVariableThatExpandsToGigabytesBeforeItDoes) {
   EXPECT_EQ(read_mat(head + packed_variable(cut), "cut.mat").damage.records_lost, 1U);
 }
 
+/// A variable of `count` zeros of one byte each, by its name.
+std::string zeros(const char name, std::uint32_t count) {
+  const std::string body = testing::pack(std::uint32_t{6}, std::uint32_t{8}, std::uint32_t{8}, std::uint32_t{0}) +
+                           testing::pack(std::uint32_t{5}, std::uint32_t{8}, count, std::uint32_t{1}) +
+                           testing::pack(std::uint32_t{1}, std::uint32_t{1}) + std::string(1, name) +
+                           std::string(7, '\0') + testing::pack(std::uint32_t{1}, count) + std::string(count, '\0');
+  return testing::pack(std::uint32_t{14}, static_cast<std::uint32_t>(body.size())) + body;
+}
+
+TEST(Mat, RefusesVariablesThatTogetherTakeMoreThanTheMemoryMayBeFilledWith) {
+  const std::string head = testing::small_mat().substr(0, 128);
+  constexpr std::uint32_t kEight = 1U << 20U;  // 8 MiB as doubles
+  const std::string large = packed_variable(zeros('b', 33 * kEight));
+  EXPECT_EQ(read_mat(head + packed_variable(zeros('a', 8)) + large, "one.mat").damage.records_lost, 0U);
+  EXPECT_EQ(
+      testing::message_of([&] { (void)read_mat(head + large + packed_variable(zeros('c', 32 * kEight)), "x.mat"); }),
+      "x.mat: its variables take more than the 512 MiB that they may together, with 'c': save it in parts");
+  std::string many;
+  for (int i = 0; i < 200; ++i) many += packed_variable(zeros('d', kEight / 2));
+  EXPECT_THAT(testing::message_of([&] { (void)read_mat(head + many, "many.mat"); }), ::testing::HasSubstr("512 MiB"));
+}
+
+TEST(Mat, RefusesCellsThatTakeMoreInMemoryThanInTheFile) {
+  const std::string head = testing::small_mat().substr(0, 128);
+  constexpr std::uint32_t kCells = 5'000'000;
+  const std::string empty = testing::pack(std::uint32_t{14}, std::uint32_t{0});
+  std::string items;
+  for (std::uint32_t i = 0; i < kCells; ++i) items += empty;
+  const std::string body = testing::pack(std::uint32_t{6}, std::uint32_t{8}, std::uint32_t{1}, std::uint32_t{0}) +
+                           testing::pack(std::uint32_t{5}, std::uint32_t{8}, kCells, std::uint32_t{1}) +
+                           testing::pack(std::uint32_t{1}, std::uint32_t{1}) + "c" + std::string(7, '\0') + items;
+  const std::string cells = testing::pack(std::uint32_t{14}, static_cast<std::uint32_t>(body.size())) + body;
+  EXPECT_THAT(testing::message_of([&] { (void)read_mat(head + packed_variable(cells), "cells.mat"); }),
+              ::testing::HasSubstr("variable 'c' takes"));
+}
+
 TEST(Mat, LosesOnlyTheVariableThatIsDamaged) {
   std::string bytes = testing::small_mat();
   bytes[128 + 8] = 0x55;  // type of the first variable's flags

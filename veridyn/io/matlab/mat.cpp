@@ -335,6 +335,7 @@ class Builder {
       fields.push_back({fmt::format("{}[{}]", label, k), "1", 1.0, {}, {}});
       columns.emplace_back(begin, begin + signed_index(rows));
     }
+    item.numbers = {};
   }
 
   Log& log_;

@@ -141,7 +141,8 @@ class Elements {
 };
 
 /// What a compressed element expands to, which its own tag says ahead of all the rest.
-std::optional<std::string> inflated(std::string_view packed, bool swap, const std::string& source) {
+std::optional<std::string> inflated(std::string_view packed, bool swap, const MatBudget& budget,
+                                    const std::string& source) {
   constexpr std::size_t kTag = 8;
   z_stream stream{};
   if (inflateInit(&stream) != Z_OK) return std::nullopt;
@@ -163,9 +164,12 @@ std::optional<std::string> inflated(std::string_view packed, bool swap, const st
   };
   bool good = fill() && filled == kTag;
   const std::size_t size = good ? load<std::uint32_t>(result.data() + 4, swap) : 0;
-  if (size > kLargestMatVariable) {
-    inflateEnd(&stream);
+  try {
     require_mat_size(static_cast<double>(size), "", source);
+    budget.require_room(static_cast<double>(size), "");
+  } catch (const InputError&) {
+    inflateEnd(&stream);
+    throw;
   }
   if (good) {
     result.resize(kTag + size);
@@ -177,9 +181,11 @@ std::optional<std::string> inflated(std::string_view packed, bool swap, const st
 
 class Parser {
  public:
-  Parser(bool swap, std::string source) : swap_(swap), source_(std::move(source)) {}
+  Parser(bool swap, std::string source) : swap_(swap), budget_(std::move(source)) {}
 
-  std::optional<MatValue> matrix(std::string_view bytes, int depth) const {
+  [[nodiscard]] const MatBudget& budget() const { return budget_; }
+
+  std::optional<MatValue> matrix(std::string_view bytes, int depth) {
     MatValue value;
     if (bytes.empty()) return value;  // an empty cell
     if (depth > kDeepestMatNesting) return std::nullopt;
@@ -215,13 +221,13 @@ class Parser {
   }
 
  private:
-  std::optional<MatValue> numbers(MatValue value, Elements& elements, std::size_t count) const {
+  std::optional<MatValue> numbers(MatValue value, Elements& elements, std::size_t count) {
     value.kind = MatValue::Kind::kNumbers;
     if (count == 0) return value;
     const auto data = elements.next();
     const std::size_t width = data ? width_of(data->type) : 0;
     if (width == 0 || data->data.size() / width < count) return std::nullopt;
-    require_mat_size(8.0 * static_cast<double>(count), value.name, source_);
+    budget_.take(8.0 * static_cast<double>(count), value.name);
     value.numbers.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
       value.numbers[i] = number_at(data->data.data() + i * width, data->type, swap_);
@@ -240,12 +246,13 @@ class Parser {
     return value;
   }
 
-  std::optional<MatValue> text(MatValue value, Elements& elements) const {
+  std::optional<MatValue> text(MatValue value, Elements& elements) {
     value.kind = MatValue::Kind::kText;
     const auto data = elements.next();
     if (!data) return value;
     const std::size_t width = width_of(data->type);
     if (width == 0) return std::nullopt;
+    budget_.take(static_cast<double>(data->data.size() / width), value.name);
     std::string characters;
     for (std::size_t i = 0; i + width <= data->data.size(); i += width) {
       const double code = number_at(data->data.data() + i, data->type, swap_);
@@ -255,9 +262,10 @@ class Parser {
     return value;
   }
 
-  std::optional<MatValue> cells(MatValue value, Elements& elements, std::size_t count, int depth) const {
+  std::optional<MatValue> cells(MatValue value, Elements& elements, std::size_t count, int depth) {
     value.kind = MatValue::Kind::kCell;
     if (count > elements.left() / 8) return std::nullopt;
+    take_items(count, value);
     for (std::size_t i = 0; i < count; ++i) {
       const auto element = elements.next();
       if (!element || element->type != kMatrix) return std::nullopt;
@@ -268,7 +276,7 @@ class Parser {
     return value;
   }
 
-  std::optional<MatValue> fields(MatValue value, Elements& elements, std::size_t count, int depth) const {
+  std::optional<MatValue> fields(MatValue value, Elements& elements, std::size_t count, int depth) {
     value.kind = MatValue::Kind::kStruct;
     const auto length = elements.next();
     if (!length || length->type != kInt32 || length->data.size() < 4) return std::nullopt;
@@ -279,6 +287,7 @@ class Parser {
     const std::size_t field_count = names->data.size() / size;
     if (field_count > 0 && count > elements.left() / 8 / field_count) return std::nullopt;
     if (field_count == 0) return value;
+    take_items(count * field_count, value);
     for (std::size_t i = 0; i < count * field_count; ++i) {
       const auto element = elements.next();
       if (!element || element->type != kMatrix) return std::nullopt;
@@ -291,13 +300,33 @@ class Parser {
     return value;
   }
 
+  /// Room for cells or fields, each of which takes more than its eight bytes in the file.
+  void take_items(std::size_t count, MatValue& value) {
+    budget_.take(static_cast<double>(count * sizeof(MatValue)), value.name);
+    value.items.reserve(count);
+  }
+
   static constexpr std::size_t kLargestCount = std::size_t{1} << 31U;
 
   bool swap_;
-  std::string source_;
+  MatBudget budget_;
 };
 
 }  // namespace
+
+void MatBudget::require_room(double bytes, std::string_view variable) const {
+  if (taken_ + bytes <= static_cast<double>(kLargestMatFile)) return;
+  throw InputError(source_,
+                   fmt::format("its variables take more than the {} MiB that they may together{}: save it in "
+                               "parts",
+                               kLargestMatFile >> 20U, variable.empty() ? "" : fmt::format(", with '{}'", variable)));
+}
+
+void MatBudget::take(double bytes, std::string_view variable) {
+  require_mat_size(bytes, variable, source_);
+  require_room(bytes, variable);
+  taken_ += bytes;
+}
 
 void require_mat_size(double bytes, std::string_view name, const std::string& source) {
   if (bytes <= static_cast<double>(kLargestMatVariable)) return;
@@ -328,7 +357,7 @@ void read_mat5(std::string_view bytes, const std::string& source, const std::fun
   }
   // "MI" as written by a machine of the other byte order reads "IM".
   const bool swap = bytes[126] == 'M';
-  const Parser parser(swap, source);
+  Parser parser(swap, source);
   Elements elements(bytes.substr(kFileHeader), swap);
   while (!elements.empty()) {
     const std::size_t left = elements.left();
@@ -341,7 +370,7 @@ void read_mat5(std::string_view bytes, const std::string& source, const std::fun
     }
     std::optional<MatValue> value;
     if (element->type == kCompressed) {
-      if (const auto plain = inflated(element->data, swap, source)) {
+      if (const auto plain = inflated(element->data, swap, parser.budget(), source)) {
         Elements inner(*plain, swap);
         const auto matrix = inner.next();
         if (matrix && matrix->type == kMatrix) value = parser.matrix(matrix->data, 0);

@@ -105,10 +105,10 @@ double bytes_of(matvar_t& info, int depth) {
 void read_mat73(const std::string& path, const std::function<void(MatValue&&)>& take, LogDamage& damage) {
   const std::unique_ptr<mat_t, int (*)(mat_t*)> file(Mat_Open(path.c_str(), MAT_ACC_RDONLY), &Mat_Close);
   if (file == nullptr) throw InputError(path, "cannot be opened as a MATLAB 7.3 (HDF5) file");
+  MatBudget budget(path);
   while (matvar_t* const variable = Mat_VarReadNextInfo(file.get())) {
     const std::unique_ptr<matvar_t, void (*)(matvar_t*)> owner(variable, &Mat_VarFree);
-    require_mat_size(bytes_of(*variable, 0), variable->name != nullptr ? internal::printable(variable->name) : "",
-                     path);
+    budget.take(bytes_of(*variable, 0), variable->name != nullptr ? internal::printable(variable->name) : "");
     if (Mat_VarReadDataAll(file.get(), variable) != 0) {
       ++damage.records_lost;
       continue;

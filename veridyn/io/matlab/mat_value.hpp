@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "veridyn/io/log/log.hpp"
@@ -17,8 +18,25 @@ inline constexpr int kDeepestMatNesting = 16;
 /// to gigabytes is refused before it does.
 inline constexpr std::size_t kLargestMatVariable = std::size_t{384} << 20U;
 
+/// Bytes that all variables of a file may take together, likewise.
+inline constexpr std::size_t kLargestMatFile = std::size_t{512} << 20U;
+
 /// Refuses a variable of so many bytes where that is more. @throws InputError
 void require_mat_size(double bytes, std::string_view name, const std::string& source);
+
+/// What the variables of a file take in memory, counted before it is taken.
+class MatBudget {
+ public:
+  explicit MatBudget(std::string source) : source_(std::move(source)) {}
+  /// Refuses bytes that are needed for a while where there is no room for them. @throws InputError
+  void require_room(double bytes, std::string_view variable) const;
+  /// Counts bytes that stay. @throws InputError where there is no room, or `variable` is larger than one may be
+  void take(double bytes, std::string_view variable);
+
+ private:
+  std::string source_;
+  double taken_ = 0.0;
+};
 
 /// A variable of a MAT file, or a part of one.
 struct MatValue {
@@ -39,7 +57,7 @@ struct MatValue {
 ///
 /// Format: MathWorks, "MAT-File Format", chapter 1. Every length is checked against what is left of the file before it
 /// is trusted. A variable that does not hold together is counted in the damage and left out.
-/// @throws InputError where a variable is larger than `kLargestMatVariable`
+/// @throws InputError where a variable is larger than `kLargestMatVariable`, or all together than `kLargestMatFile`
 void read_mat5(std::string_view bytes, const std::string& source, const std::function<void(MatValue&&)>& take,
                LogDamage& damage);
 
