@@ -13,6 +13,7 @@
 #include "apps/veridyn/profile_results.hpp"
 #include "apps/veridyn/study_tables.hpp"
 #include "apps/veridyn/version.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/estimation/judgement/subject_grades.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
@@ -62,6 +63,38 @@ std::string prediction_csv(const DriveValidation& v) {
   return text;
 }
 
+/// `open_loop_path.csv`; nothing where neither heading nor positions were recorded.
+void write_path(OutputFolder& folder, const DrivePath& path) {
+  if (!path.available()) return;
+  Recording recording;
+  recording.source = "open_loop_path.csv";
+  recording.frame = Frame::kFlu;
+  const TimeBase time = make_time_base(path.time);
+  const auto add = [&](const char* name, const char* unit, const std::vector<double>& values) {
+    recording.add(make_channel(name, unit, time, values));
+  };
+  if (path.heading) {
+    add("yaw", "rad", path.yaw);
+    add("yaw_model", "rad", path.yaw_model);
+  }
+  if (path.position) {
+    add("pos_x", "m", path.x);
+    add("pos_x_model", "m", path.x_model);
+    add("pos_y", "m", path.y);
+    add("pos_y_model", "m", path.y_model);
+  }
+  folder.write("open_loop_path.csv", io::to_csv(recording));
+}
+
+void print_path(const CommonOptions& options, const DrivePath& path) {
+  if (path.heading)
+    print_line(options, fmt::format("  open loop    heading: RMSE {:.3g} deg, {:.3g} deg off at the end",
+                                    path.heading->rmse / kDegree, path.heading->at_end / kDegree));
+  if (path.position)
+    print_line(options, fmt::format("  open loop    path: RMSE {:.3g} m ({:.3g} m across), {:.3g} m off after {:.0f} m",
+                                    path.position->rmse, path.across_rmse, path.position->at_end, path.distance_m));
+}
+
 void write_results(OutputFolder& folder, const PreparedDrive& drive, const VehicleAnalysis& analysis,
                    bool validation_only) {
   const VehicleIdentification& id = analysis.identification;
@@ -70,6 +103,7 @@ void write_results(OutputFolder& folder, const PreparedDrive& drive, const Vehic
   folder.write("methods.csv", methods_csv(analysis));
   folder.write("validation.csv", prediction_csv(id.validation));
   write_open_loop(folder, analysis.open_loop, Frame::kFlu);
+  write_path(folder, analysis.open_loop.path);
   write_profiles(folder, id.profiles, profiled_parameters(id));
   if (drive.run) {
     folder.write("truth.csv", io::to_csv(to_recording(drive.run->trajectory)));
@@ -109,6 +143,7 @@ void print_analysis(const VehicleAnalysis& analysis, const std::filesystem::path
                fmt::format("  hold-out {:<16} R2 {:.3f}, RMSE {:.3g} {}", q.name, q.fit.r2, q.fit.rmse, q.unit));
   }
   print_open_loop(options, analysis.open_loop);
+  print_path(options, analysis.open_loop.path);
   for (const std::string& warning : analysis.estimate.warnings) print_line(options, "warning: " + warning);
   print_line(options, id.reason);
   print_line(options, fmt::format("report: {}", (folder / "report.html").string()));
@@ -123,6 +158,18 @@ Summary summary_of(const VehicleAnalysis& analysis, const std::filesystem::path&
   if (!analysis.identification.profiles.profiles.empty())
     s["profiles"] = profiles_summary(analysis.identification.profiles);
   if (analysis.open_loop.available()) s["open_loop"] = open_loop_summary(analysis.open_loop);
+  if (const DrivePath& path = analysis.open_loop.path; path.available()) {
+    Summary& scores = s["open_loop"];
+    if (path.heading)
+      scores["yaw"] = Summary::object(
+          {{"rmse", path.heading->rmse / kDegree}, {"at_end", path.heading->at_end / kDegree}, {"unit", "deg"}});
+    if (path.position)
+      scores["position"] = Summary::object({{"rmse", path.position->rmse},
+                                            {"at_end", path.position->at_end},
+                                            {"across_rmse", path.across_rmse},
+                                            {"way", path.distance_m},
+                                            {"unit", "m"}});
+  }
   s["estimate"] = Summary::json(io::to_json(analysis.estimate));
   return s;
 }

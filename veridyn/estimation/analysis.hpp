@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/estimate.hpp"
 #include "veridyn/estimation/judgement/evidence.hpp"
 #include "veridyn/estimation/judgement/judgement.hpp"
@@ -72,6 +73,8 @@ struct PredictedQuantity {
   std::string unit = "1";
   numerics::FitMeasures fit = {};
   double lag1 = 0.0;  ///< autocorrelation of the residual at one sample, 0 when it is white; NaN: not computed
+  /// Variance of the mean of many residuals over that of as many independent ones; NaN: not computed.
+  double long_run = kNaN;
 };
 
 /// What identification delivers, whatever the domain: read by estimate.json, tables, console and report. What only one

@@ -12,6 +12,7 @@
 #include "veridyn/report/document/number_format.hpp"
 #include "veridyn/report/figures/curves.hpp"
 #include "veridyn/report/parts/analysis_sections.hpp"
+#include "veridyn/report/parts/drive_path_section.hpp"
 #include "veridyn/report/parts/open_loop_section.hpp"
 #include "veridyn/report/parts/profile_section.hpp"
 #include "veridyn/report/parts/remarks.hpp"
@@ -298,6 +299,7 @@ Document drive_report(const VehicleStudy& study, const VehicleAnalysis& analysis
                       "error bars; what [identify.uncertainty] adds is in the error bars only."));
   if (!id.validation.stretches.empty()) add(validation_section(id.validation));
   add(open_loop_section(analysis.open_loop));
+  add(drive_path_section(analysis.open_loop.path));
   add(methods_section(analysis));
   add(evidence_section(analysis.estimate));
   if (!id.fit.stretches.empty()) document.sections.push_back(fit_section(id.fit));

@@ -128,6 +128,7 @@ estimation::Estimate by_motion(const VehicleIdentification& identification, cons
 VehicleAnalysis with_results(VehicleAnalysis analysis, const VehicleStudy& study) {
   analysis.estimate = make_vehicle_estimate(analysis.identification, study.subject_name);
   estimation::add_open_loop(analysis.open_loop, analysis.estimate);
+  add_path(analysis.open_loop.path, analysis.estimate);
   analysis.groups = {parameter_group(analysis.identification, study.subject_name)};
   analysis.predictions = analysis.identification.validation.quantities;
   analysis.truth = study.truth;
@@ -161,8 +162,10 @@ VehicleAnalysis identify(const VehicleStudy& study, Progress& progress) {
   out.segments = find_drive_segments(out.signals, study.segments, study.log.holdout_runs);
   const std::vector<estimation::Evidence> recording =
       drive_evidence(study.log.mapped, out.signals, out.segments, study.vehicle, study.signals, progress);
-  out.identification = identify_parameters(
-      {out.signals, out.segments, study.vehicle, study.signals, study.identify, recording}, progress);
+  VehicleIdentifyOptions options = study.identify;
+  options.model = with_course(std::move(options.model), out.signals.lateral_by_course);
+  out.identification =
+      identify_parameters({out.signals, out.segments, study.vehicle, study.signals, options, recording}, progress);
   out.interrupted = out.identification.interrupted;
   const estimation::Estimate found = by_motion(out.identification, study.subject_name);
   out = driven_open_loop(std::move(out), OpenLoopUse::kHoldout, found, study, progress);

@@ -297,7 +297,7 @@ TEST(DriveOpenLoop, BandsHoldTheErrorsOfTheParameters) {
   constexpr double kSigma = 0.06;
   numerics::RandomStream random(4, "models");
   double inside = 0.0, without = 0.0;
-  constexpr int kDraws = 12;
+  constexpr int kDraws = 60;
   for (int draw = 0; draw < kDraws; ++draw) {
     VehicleParameters<double> model = p;
     for (double* value : {&model.C_f, &model.C_r, &model.I_z}) *value *= 1.0 + kSigma * random.normal();
@@ -404,6 +404,44 @@ TEST(DriveOpenLoop, OfACarThatSpinsIsCutThereAndTheRowFails) {
   EXPECT_TRUE(missed);
   const std::vector<Evidence> rows = open_loop_evidence(driven);
   EXPECT_TRUE(std::ranges::any_of(rows, [](const Evidence& row) { return !row.passed(); }));
+}
+
+TEST(DriveOpenLoop, FollowsHeadingAndPathOfTheCarItIsAndStraysFromAnother) {
+  const VehicleParameters<double> p = family_car();
+  const VehicleTrajectory trajectory = lively_drive(p, 5);
+  DriveSensorSet sensors = testing::perfect_sensors();
+  sensors[DriveSensorKind::kPosition] = {.enabled = true, .rate_Hz = 100.0};
+  Drive drive(trajectory, sensors, 1);
+  ASSERT_FALSE(drive.signals[DriveSignal::kLateralVelocity].available()) << "the path needs it and takes the model's";
+  drive.signals[DriveSignal::kYaw].value.assign(
+      trajectory.yaw.begin(), trajectory.yaw.begin() + std::ssize(drive.signals[DriveSignal::kX].value));
+  const DriveOpenLoopOptions options{.times = {.duration_s = 60.0}, .offsets = {{}}};
+  const DriveOpenLoop exact = drive.driven(p, bicycle_estimate(p), options);
+  ASSERT_TRUE(exact.path.heading && exact.path.position);
+  EXPECT_LT(exact.path.heading->at_end, 0.01 * kDegree);
+  EXPECT_LT(exact.path.position->at_end, 0.05) << "after 1.1 km, most of it by the test's own Euler steps";
+  EXPECT_NEAR(exact.path.distance_m, 20.0 * 56.9, 25.0);
+  EXPECT_EQ(exact.states.size(), 2U) << "the lateral velocity was not measured, and is not scored";
+  EXPECT_GT(exact.windows[0].first_left_s, 56.0);
+  VehicleParameters<double> softer = p;
+  softer.C_r *= 0.9;
+  const DriveOpenLoop wrong = drive.driven(p, bicycle_estimate(softer), options);
+  EXPECT_GT(wrong.path.position->rmse, 20.0 * exact.path.position->rmse);
+  EXPECT_GT(wrong.path.heading->rmse, 20.0 * exact.path.heading->rmse);
+}
+
+TEST(DriveOpenLoop, OfAStiffCarIsNotHeldByHoldingTenOfItsPeriods) {
+  DriveOpenLoop driven{{.times = {.duration_s = 10.0}, .inputs = "steering and speed"}, 0.042, {}};
+  driven.states.push_back(
+      {.name = "yaw_rate", .unit = "deg/s", .normalised_rmse = 0.1, .horizon_s = 1.5, .windows = 3});
+  const std::vector<Evidence> left = open_loop_evidence(driven);
+  EXPECT_EQ(row_of(left, "open loop horizon").outcome, Outcome::kCare) << "36 of its periods, and a second and a half";
+  EXPECT_NEAR(row_of(left, "open loop horizon").value, 1.5, 1e-12);
+  EXPECT_THAT(row_of(left, "open loop horizon").text, HasSubstr("0.042 s, is shorter"));
+  driven.states[0].horizon_s = 10.5;
+  EXPECT_EQ(row_of(open_loop_evidence(driven), "open loop horizon").outcome, Outcome::kPassed);
+  driven.yaw_period_s = 1.5;
+  EXPECT_EQ(row_of(open_loop_evidence(driven), "open loop horizon").outcome, Outcome::kCare) << "7 slow periods";
 }
 
 TEST(DriveOpenLoop, SaysWhyNothingWasDrivenAndIsSilentWhereNothingIsAskedFor) {

@@ -40,7 +40,7 @@ RowMatrix sigmas(const OpenLoopResponse& response, const OpenLoopStart& start, c
     for (Index j = 0; j < states; ++j) {
       const double parameters = g.row(j).dot(problem.covariance * g.row(j).transpose());
       const double beginning = S.row(j).dot(start.covariance * S.row(j).transpose());
-      const auto [white, lasting] = problem.errors[j];
+      const double white = problem.errors[j].white, lasting = problem.errors[j].lasting;
       sigma(k, j) = std::sqrt(std::max(0.0, parameters) + std::max(0.0, beginning) + white * white + lasting * lasting);
     }
   }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/estimation/open_loop/open_loop.hpp"
 #include "veridyn/estimation/open_loop/open_loop_model.hpp"
@@ -13,10 +14,12 @@
 namespace veridyn::estimation {
 
 /// What measured less predicted has of its own, whatever the parameters: of noise that is new in each sample, and of
-/// errors that hardly change within seconds. Standard deviations [SI].
+/// errors that last. Standard deviations [SI].
 struct OpenLoopError {
   double white = 0.0;
   double lasting = 0.0;
+  /// In so many samples the lasting error is one observation; infinite: it hardly changes within seconds.
+  double memory = kInfinity;
 };
 
 /// View of what is known of the windows of one recording.
@@ -50,7 +53,8 @@ struct OpenLoopStart {
 };
 
 /// Initial states and offsets of all windows of a model whose parameters are fixed, from their first seconds: by output
-/// error with the errors given. An error that lasts counts as one observation in those seconds.
+/// error with the errors given. An error that lasts counts as one observation in its memory, and in those seconds at
+/// least.
 /// @param first  the model, shortened here to those seconds
 [[nodiscard]] std::vector<OpenLoopStart> open_loop_starts(OpenLoopModel& first, const OpenLoopProblem& problem,
                                                           Progress& progress);

@@ -70,9 +70,12 @@ std::vector<OpenLoopStart> open_loop_starts(OpenLoopModel& first, const OpenLoop
   fit.noise = OutputNoise::kGiven;
   fit.covariance = CovarianceKind::kWhite;
   fit.noise_start = Eigen::VectorXd::Ones(first.outputs().size());
-  for (std::size_t j = 0; j < problem.errors.size(); ++j)
-    fit.noise_start(j) =
-        std::hypot(problem.errors[j].white, problem.errors[j].lasting * std::sqrt(static_cast<double>(most)));
+  for (std::size_t j = 0; j < problem.errors.size(); ++j) {
+    const OpenLoopError& error = problem.errors[j];
+    const double alike =
+        std::clamp(error.memory / static_cast<double>(problem.stride), 1.0, std::max(1.0, static_cast<double>(most)));
+    fit.noise_start(j) = std::hypot(error.white, error.lasting * std::sqrt(alike));
+  }
   const OutputErrorEstimate fitted = output_error(first, measured, fit, progress);
   if (fitted.has_estimate()) {
     std::vector<Index> place(first.segments(), first.parameters().size());

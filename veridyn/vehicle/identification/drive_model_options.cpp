@@ -19,6 +19,7 @@ constexpr std::array kRolls{DriveUnknown::kRollGradient,     DriveUnknown::kRoll
                             DriveUnknown::kRollDamping,      DriveUnknown::kRollArm,
                             DriveUnknown::kRelaxationLength, DriveUnknown::kLoadTransfer,
                             DriveUnknown::kLoadTransferLoss, DriveUnknown::kLoadTransferBalance};
+constexpr std::array kOfCourse{DriveUnknown::kSideslipBias, DriveUnknown::kCourseDelay};
 constexpr std::array kOfEffects{DriveUnknown::kDownforceF, DriveUnknown::kDownforceR, DriveUnknown::kLoadSensitivity,
                                 DriveUnknown::kFrontForceShare};
 constexpr std::array kByGeometry{DriveUnknown::kCf,
@@ -134,6 +135,7 @@ std::pair<double, double> bounds_of(DriveUnknown unknown, double start, double w
     case DriveUnknown::kSteerDelay:
     case DriveUnknown::kYawRateDelay:
     case DriveUnknown::kAccelYDelay:
+    case DriveUnknown::kCourseDelay:
       return {-kLongestDelay_s, kLongestDelay_s};
     default:
       return {-kInfinity, kInfinity};
@@ -156,8 +158,10 @@ DriveModelOptions::DriveModelOptions() {
   prior[DriveUnknown::kAccelYBias] = 0.5;
   prior[DriveUnknown::kSteerScale] = 0.1;
   prior[DriveUnknown::kAccelYScale] = 0.1;
-  for (const DriveUnknown u : {DriveUnknown::kSteerDelay, DriveUnknown::kYawRateDelay, DriveUnknown::kAccelYDelay})
+  for (const DriveUnknown u :
+       {DriveUnknown::kSteerDelay, DriveUnknown::kYawRateDelay, DriveUnknown::kAccelYDelay, DriveUnknown::kCourseDelay})
     prior[u] = 0.1;
+  prior[DriveUnknown::kSideslipBias] = kDegree;
   for (const DriveUnknown u : kRolls) prior[u] = kNaN;
   prior[DriveUnknown::kDownforceF] = prior[DriveUnknown::kDownforceR] = kDownforceSigma;
   // Stiffness grows with load by 0.4 to 1 of what it would in proportion (Pacejka 2006, chapter 1).
@@ -189,6 +193,10 @@ void DriveModelOptions::read_keys(const StudyTable& table) {
       const auto unknown = static_cast<DriveUnknown>(at - names.begin());
       if (std::ranges::find(kRolls, unknown) != kRolls.end())
         table.fail("estimate", fmt::format("names {}, which identify.structure frees or not", name));
+      if (std::ranges::find(kOfCourse, unknown) != kOfCourse.end())
+        table.fail("estimate", fmt::format("names {}, which is estimated wherever course and heading give the lateral "
+                                           "velocity",
+                                           name));
       if (std::ranges::find(kOfEffects, unknown) != kOfEffects.end())
         table.fail("estimate", fmt::format("names {}, which identify.effects frees or not", name));
       free[unknown] = true;
@@ -240,6 +248,11 @@ estimation::ModelParameter model_parameter(DriveUnknown unknown, const DriveMode
   p.low = std::min(low, p.start);
   p.high = std::max(high, p.start);
   return p;
+}
+
+DriveModelOptions with_course(DriveModelOptions options, bool by_course) {
+  for (const DriveUnknown u : kOfCourse) options.free[u] = by_course;
+  return options;
 }
 
 DriveModelOptions with_structure(DriveModelOptions options, DriveStructure structure) {

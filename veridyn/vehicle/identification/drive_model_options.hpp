@@ -43,12 +43,14 @@ enum class DriveUnknown : std::size_t {
   kAccelYScale,   ///< measured over true, less 1 [-]
   kRollBias,      ///< where roll is recorded [rad]
   kRollRateBias,  ///< where the roll rate is recorded [rad/s]
+  kSideslipBias,  ///< of a lateral velocity made of course and heading, over the speed [rad]
   kSteerDelay,    ///< how late the front wheels' force answers the recorded steering [s]
   kYawRateDelay,  ///< how late the yaw rate is recorded [s]
-  kAccelYDelay
+  kAccelYDelay,
+  kCourseDelay  ///< how late the course is, of which a lateral velocity is made [s]
 };
 /// How many unknowns there are.
-inline constexpr std::size_t kDriveUnknowns = 29;
+inline constexpr std::size_t kDriveUnknowns = 31;
 /// All of them, in order.
 inline constexpr auto kAllDriveUnknowns = enumerators<DriveUnknown, kDriveUnknowns>();
 /// A value for each of them.
@@ -81,21 +83,23 @@ inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownNames{"C_f",
                                                                       "accel_y_scale",
                                                                       "roll_bias",
                                                                       "roll_rate_bias",
+                                                                      "sideslip_bias",
                                                                       "steer_delay",
                                                                       "yaw_rate_delay",
-                                                                      "accel_y_delay"};
+                                                                      "accel_y_delay",
+                                                                      "course_delay"};
 /// Their units, in the same order.
 inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownUnits{
-    "N/rad", "N/rad", "kg m^2", "m",       "1",       "1",     "1", "rad s^2/m", "m", "m",
-    "1",     "1",     "1",      "s^2/m^2", "s^2/m^2", "1",     "1", "rad/s",     "1", "rad",
-    "1",     "rad/s", "m/s^2",  "1",       "rad",     "rad/s", "s", "s",         "s"};
+    "N/rad", "N/rad", "kg m^2",  "m",       "1",   "1", "1",     "rad s^2/m", "m",   "m", "1",
+    "1",     "1",     "s^2/m^2", "s^2/m^2", "1",   "1", "rad/s", "1",         "rad", "1", "rad/s",
+    "m/s^2", "1",     "rad",     "rad/s",   "rad", "s", "s",     "s",         "s"};
 static_assert(!kDriveUnknownNames.back().empty() && !kDriveUnknownUnits.back().empty(), "one is missing");
 /// Whether it is the vehicle's, and not of its sensors or the day.
 [[nodiscard]] constexpr bool is_of_the_vehicle(DriveUnknown u) { return u < DriveUnknown::kRollFrequency; }
 /// Whether it is an offset of a sensor, which each drive has its own of.
 [[nodiscard]] constexpr bool is_bias(DriveUnknown u) {
   return u == DriveUnknown::kSteerBias || u == DriveUnknown::kYawRateBias || u == DriveUnknown::kAccelYBias ||
-         u == DriveUnknown::kRollBias || u == DriveUnknown::kRollRateBias;
+         u == DriveUnknown::kRollBias || u == DriveUnknown::kRollRateBias || u == DriveUnknown::kSideslipBias;
 }
 
 /// Tyres of the drive model.
@@ -120,7 +124,8 @@ struct DriveModelOptions {
   PerDriveUnknown<double> start{};
   /// `[identify.prior] steer_bias = "1 deg"`: standard deviation of what is known beforehand; infinite: nothing.
   /// Defaults: steer_bias 1 deg, yaw_rate_bias 1 deg/s, accel_y_bias 0.5 m/s^2 (at one constant speed the three are
-  /// indistinguishable without), steer_scale and accel_y_scale 0.1, delays 0.1 s, C 0.2, E 0.5; NaN: by the geometry.
+  /// indistinguishable without), steer_scale and accel_y_scale 0.1, sideslip_bias 1 deg, delays 0.1 s, C 0.2, E 0.5;
+  /// NaN: by the geometry.
   PerDriveUnknown<double> prior{};
   /// `smoothing`: cut-off of the kernel through which inputs and outputs alike go before the comparison [Hz]. Noise of
   /// the steering acts on the lateral acceleration at once (2 C_f/m times it), and what it adds to the slip angle's
@@ -157,6 +162,9 @@ inline constexpr double kLongestDelay_s = 0.5;
 /// An unknown as the options have it, with the bounds between which it is searched.
 [[nodiscard]] estimation::ModelParameter model_parameter(DriveUnknown unknown, const DriveModelOptions& options,
                                                          double wheelbase);
+
+/// The options with what a lateral velocity of course and heading leaves open, free where there is one (`by_course`).
+[[nodiscard]] DriveModelOptions with_course(DriveModelOptions options, bool by_course);
 
 /// The options for a structure, whose unknowns are free.
 [[nodiscard]] DriveModelOptions with_structure(DriveModelOptions options, DriveStructure structure);

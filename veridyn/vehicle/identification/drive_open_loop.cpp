@@ -29,6 +29,8 @@ using estimation::OpenLoopForecast;
 constexpr double kFinerSteps = 5.0;
 /// Where a signal has no error, rounding is one.
 constexpr double kRounding = 1e-8;
+/// Of an output that was not measured, so that it says nothing [m/s].
+constexpr double kUnmeasured = 1e6;
 
 /// Where windows may begin, and what they may be driven over.
 struct Spans {
@@ -45,6 +47,18 @@ Spans spans_of(const DriveSegments& segments, OpenLoopUse use) {
   return spans;
 }
 
+/// Whether the path needs a lateral velocity that was not recorded.
+bool needs_lateral_velocity(const DriveSignals& signals) {
+  return signals[DriveSignal::kX].available() && signals[DriveSignal::kY].available() &&
+         !signals[DriveSignal::kLateralVelocity].available();
+}
+
+/// With a lateral velocity of which nothing was measured, so that it is an output of the model.
+DriveSignals with_lateral_velocity(DriveSignals signals) {
+  signals[DriveSignal::kLateralVelocity].value.assign(signals.size(), kNaN);
+  return signals;
+}
+
 /// Whether a bias changes anything that is compared.
 bool acts_on(DriveUnknown bias, DriveStructure structure, const DriveSignals& signals) {
   switch (bias) {
@@ -54,6 +68,8 @@ bool acts_on(DriveUnknown bias, DriveStructure structure, const DriveSignals& si
       return has_roll(structure) && signals[DriveSignal::kRoll].available();
     case DriveUnknown::kRollRateBias:
       return has_roll(structure) && signals[DriveSignal::kRollRate].available();
+    case DriveUnknown::kSideslipBias:
+      return signals.lateral_by_course;
     default:
       return true;
   }
@@ -87,23 +103,39 @@ EstimatedDriveModel fixed_model(const DriveOpenLoopProblem& problem, const Drive
   return out;
 }
 
+/// NaN where the estimate does not say.
+double fit_of(const estimation::Estimate& estimate, const std::string& name) {
+  const auto found = estimate.fit.find(name);
+  return found == estimate.fit.end() ? kNaN : found->second;
+}
+
 /// The errors of what is compared: the sensor's, and what lasts: what noise of the steering gives it, or what the
 /// residual had beyond the sensor where the model was identified.
 std::vector<OpenLoopError> errors_of(const DriveParametricModel& model, const DriveSignals& signals,
                                      const estimation::Estimate& estimate) {
   Eigen::VectorXd theta(signed_index(model.parameters().size()));
   for (Eigen::Index i = 0; i < theta.size(); ++i) theta(i) = model.parameters()[at(i)].start;
-  const Eigen::VectorXd by_steering = model.steering_noise_sigmas(theta);
+  const DriveParametricModel::SteeringEffect by_steering = model.steering_noise_effect(theta);
   std::vector<OpenLoopError> errors;
   for (const estimation::ModelOutput& output : model.outputs()) {
     const auto signal =
         static_cast<DriveSignal>(std::ranges::find(kDriveSignalNames, output.name) - kDriveSignalNames.begin());
+    if (!signals[signal].available()) {
+      errors.push_back({.white = kUnmeasured});
+      continue;
+    }
+    const auto j = signed_index(errors.size());
     OpenLoopError error{.white = std::max(kRounding, signals[signal].sigma),
-                        .lasting = by_steering(signed_index(errors.size()))};
-    const auto residual = estimate.fit.find(output.name + ".rmse");
-    if (residual != estimate.fit.end() && residual->second > error.white)
-      error.lasting =
-          std::max(error.lasting, std::sqrt(residual->second * residual->second - error.white * error.white));
+                        .lasting = by_steering.sigma(j),
+                        .memory = by_steering.memory(j)};
+    const double rmse = fit_of(estimate, output.name + ".rmse"), white = error.white * error.white;
+    const double lasting = rmse * rmse - white;
+    if (lasting > error.lasting * error.lasting) {
+      // The variance of a mean is that of white noise and what lasts together.
+      error.memory = (fit_of(estimate, output.name + ".long_run") * rmse * rmse - white) / lasting;
+      if (!(error.memory >= 1.0)) error.memory = std::isnan(error.memory) ? kInfinity : 1.0;
+      error.lasting = std::sqrt(lasting);
+    }
     errors.push_back(error);
   }
   return errors;
@@ -125,6 +157,30 @@ std::optional<double> yaw_period(const VehicleParameters<double>& p, const Drive
   const double squared = std::abs(bicycle.A().determinant());
   if (!(squared > 0.0)) return std::nullopt;
   return 2.0 * M_PI / std::sqrt(squared);
+}
+
+/// The simulated turning of the windows, whose yaw rate is without its sensor's bias.
+std::vector<SimulatedTurning> turning_of(const DriveSignals& signals, std::span<const OpenLoopForecast> driven,
+                                         std::span<const estimation::ModelOutput> outputs, double known_bias) {
+  const auto column = [&](DriveSignal signal) {
+    return std::ranges::find(outputs, kDriveSignalNames[signal], &estimation::ModelOutput::name) - outputs.begin();
+  };
+  const auto yaw_rate = column(DriveSignal::kYawRate), lateral = column(DriveSignal::kLateralVelocity);
+  std::vector<SimulatedTurning> windows;
+  for (const OpenLoopForecast& f : driven) {
+    double bias = known_bias;
+    for (const estimation::SegmentParameter& p : f.window.start)
+      if (p.name == kDriveUnknownNames[DriveUnknown::kYawRateBias]) bias = p.value;
+    SimulatedTurning motion{.first = signals.indices(f.window.span).first};
+    motion.forecast_from = static_cast<std::size_t>(
+        std::ranges::lower_bound(f.time, f.window.forecast_from - 0.5 * signals.grid.step) - f.time.begin());
+    for (Eigen::Index k = 0; k < f.predicted.rows(); ++k) {
+      motion.yaw_rate.push_back(f.predicted(k, yaw_rate) - bias);
+      motion.lateral_velocity.push_back(lateral < std::ssize(outputs) ? f.predicted(k, lateral) : 0.0);
+    }
+    windows.push_back(std::move(motion));
+  }
+  return windows;
 }
 
 std::string text_of(const DriveOpenLoop& o, OpenLoopUse use, const EstimatedDriveModel& model) {
@@ -156,14 +212,18 @@ DriveOpenLoop drive_open_loop(const DriveOpenLoopProblem& problem, const DriveOp
     for (const DriveUnknown bias : given.options.offsets) out.offsets.emplace_back(kDriveUnknownNames[bias]);
     const Spans spans = spans_of(problem.segments, problem.use);
     const std::vector<TimeSpan> windows = estimation::open_loop_windows(spans.excited, spans.free, options.times);
-    DriveParametricModel model(problem.signals, windows, given.vehicle, given.options);
+    const bool hidden = needs_lateral_velocity(problem.signals);
+    DriveParametricModel model(hidden ? with_lateral_velocity(problem.signals) : problem.signals, windows,
+                               given.vehicle, given.options);
     DriveParametricModel first = model;
     const std::vector<OpenLoopError> errors = errors_of(model, problem.signals, problem.estimate);
+    std::vector<bool> judged;
+    for (const OpenLoopError& error : errors) judged.push_back(error.white != kUnmeasured);
     const std::vector<OpenLoopForecast> driven =
         estimation::open_loop_forecasts(model, first,
                                         {.covariance = given.covariance,
                                          .errors = errors,
-                                         .judged = std::vector<bool>(errors.size(), true),
+                                         .judged = std::move(judged),
                                          .start_s = options.times.start_s,
                                          .drifting = {std::string(kSegmentBank)}},
                                         progress);
@@ -172,6 +232,8 @@ DriveOpenLoop drive_open_loop(const DriveOpenLoopProblem& problem, const DriveOp
     out.states = estimation::open_loop_scores(model.outputs(), driven, one_group,
                                               [](std::string_view) { return std::string(); });
     out.yaw_period_s = yaw_period(given.vehicle, problem.signals, driven);
+    out.path = drive_path(problem.signals, turning_of(problem.signals, driven, model.outputs(),
+                                                      given.options.start[DriveUnknown::kYawRateBias]));
   }
   out.text = text_of(out, problem.use, given);
   return out;
@@ -180,11 +242,16 @@ DriveOpenLoop drive_open_loop(const DriveOpenLoopProblem& problem, const DriveOp
 std::vector<estimation::Evidence> open_loop_evidence(const DriveOpenLoop& driven) {
   std::vector<estimation::Evidence> rows;
   if (driven.yaw_period_s) {
+    const bool faster_than_steered = *driven.yaw_period_s < kShortestYawPeriod_s;
     std::optional<estimation::Evidence> row = estimation::open_loop_horizon(
         driven,
-        {.period_s = *driven.yaw_period_s,
-         .motion = "yaw oscillation",
-         .scale = "periods of the yaw oscillation",
+        {.period_s = std::max(kShortestYawPeriod_s, *driven.yaw_period_s),
+         .motion = faster_than_steered
+                       ? fmt::format("fastest steering, {:g} s (the yaw oscillation's, {:.2g} s, is shorter)",
+                                     kShortestYawPeriod_s, *driven.yaw_period_s)
+                       : "yaw oscillation",
+         .scale = faster_than_steered ? fmt::format("periods of {:g} s", kShortestYawPeriod_s)
+                                      : "periods of the yaw oscillation",
          .advice_large =
              "see in the report where it leaves: driven harder or at other speeds than where it was identified, "
              "something is missing (identify.structure), or a recorded angle or speed is wrong",

@@ -9,6 +9,7 @@
 #include "veridyn/estimation/judgement/evidence.hpp"
 #include "veridyn/estimation/open_loop/open_loop.hpp"
 #include "veridyn/vehicle/identification/drive_open_loop_options.hpp"
+#include "veridyn/vehicle/identification/drive_path.hpp"
 #include "veridyn/vehicle/identification/drive_segments.hpp"
 #include "veridyn/vehicle/identification/drive_signals.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
@@ -19,7 +20,13 @@ namespace veridyn::vehicle {
 struct DriveOpenLoop : estimation::OpenLoop {
   /// Period of the undamped yaw oscillation of its linear bicycle at the mean speed; nothing where nothing was driven.
   std::optional<double> yaw_period_s = {};
+  DrivePath path = {};  ///< where the drive recorded its heading or positions
 };
+
+/// The horizon is measured in periods of the yaw oscillation, but in none shorter than this [s]: drivers and the tests
+/// of ISO 7401 steer up to about 1 Hz. A car whose yaw oscillation is faster follows its steering at once, and ten of
+/// its periods hold nothing that was driven.
+inline constexpr double kShortestYawPeriod_s = 1.0;
 
 /// What an estimate is driven over.
 enum class OpenLoopUse {
@@ -40,7 +47,8 @@ struct DriveOpenLoopProblem {
 };
 
 /// Drives the model of an estimate, whatever its structure, over data that it was not identified from:
-/// DriveParametricModel, from recorded steering and speed. Position and heading do not act back and are left out.
+/// DriveParametricModel, from recorded steering and speed. Position and heading do not act back: they are integrated
+/// from its motion, and scored without bands (`drive_path`).
 ///
 /// A window begins at the begin of each excited span, and where the one before it ends in there, and lasts for
 /// `open_loop`, or until the stretch that is usable (fast enough, all signals there) and that identification did not
@@ -57,8 +65,9 @@ struct DriveOpenLoopProblem {
 [[nodiscard]] DriveOpenLoop drive_open_loop(const DriveOpenLoopProblem& problem, const DriveOpenLoopOptions& options,
                                             Progress& progress);
 
-/// The rows that grade it, which bear on the prediction: *open loop horizon* in periods of the yaw oscillation, *open
-/// loop against the mean* of each output, *open loop divergence*. Limits are those of `estimation::open_loop_horizon`.
+/// The rows that grade it, which bear on the prediction: *open loop horizon* in periods of the yaw oscillation
+/// (kShortestYawPeriod_s at least), *open loop against the mean* of each output, *open loop divergence*. Limits are
+/// those of `estimation::open_loop_horizon`.
 [[nodiscard]] std::vector<estimation::Evidence> open_loop_evidence(const DriveOpenLoop& driven);
 
 }  // namespace veridyn::vehicle

@@ -23,8 +23,8 @@ struct DriveOpenLoopOptions {
 };
 
 /// The biases of steering and sensors.
-inline constexpr std::array<DriveUnknown, 5> kDriveBiases{DriveUnknown::kSteerBias, DriveUnknown::kYawRateBias,
-                                                          DriveUnknown::kAccelYBias, DriveUnknown::kRollBias,
-                                                          DriveUnknown::kRollRateBias};
+inline constexpr std::array<DriveUnknown, 6> kDriveBiases{DriveUnknown::kSteerBias,    DriveUnknown::kYawRateBias,
+                                                          DriveUnknown::kAccelYBias,   DriveUnknown::kRollBias,
+                                                          DriveUnknown::kRollRateBias, DriveUnknown::kSideslipBias};
 
 }  // namespace veridyn::vehicle

@@ -10,6 +10,7 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/numerics/linear_algebra/general_eigen.hpp"
+#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 #include "veridyn/numerics/linear_systems/lyapunov.hpp"
 #include "veridyn/numerics/modulating_kernel.hpp"
 #include "veridyn/numerics/ode.hpp"
@@ -266,7 +267,10 @@ bool DriveParametricModel::drive(const Segment& segment, const RollingBicycle<Sc
       if (i == 0) {
         for (std::size_t j = 0; j < compared_.size(); ++j) {
           const auto column = signed_index(j);
-          const Scalar true_value = true_output<kStates>(compared_[j].signal, x, k1);
+          Scalar true_value = true_output<kStates>(compared_[j].signal, x, k1);
+          if (compared_[j].signal == DriveSignal::kLateralVelocity)
+            true_value += unknown(DriveUnknown::kSideslipBias) * now.u -
+                          unknown(DriveUnknown::kCourseDelay) * k1.lateral_acceleration;
           if (delayed) shown[j][k] = true_value;
           output(row, column) = recorded(compared_[j].signal, true_value, theta);
         }
@@ -407,6 +411,8 @@ LinearDrive DriveParametricModel::linearized(double u, const Eigen::VectorXd& th
         const DriveSignal signal = compared_[at(j)].signal;
         const double scale = signal == DriveSignal::kAccelY ? accel_scale : 1.0;
         y(j) = scale * true_output<kStates>(signal, x, rates) / kSmall;
+        if (signal == DriveSignal::kLateralVelocity)
+          y(j) -= theta(static_cast<Eigen::Index>(DriveUnknown::kCourseDelay)) * rates.lateral_acceleration / kSmall;
       }
       if (i < kStates) {
         out.A.col(i) = rates.derivative / kSmall;
@@ -444,14 +450,23 @@ DriveWhitening DriveParametricModel::whitening(const Eigen::VectorXd& theta) con
   return out;
 }
 
-Eigen::VectorXd DriveParametricModel::steering_noise_sigmas(const Eigen::VectorXd& theta) const {
-  Eigen::VectorXd none = Eigen::VectorXd::Zero(signed_index(compared_.size()));
-  if (!(steer_sigma_ > 0.0) || !(steer_error_share_ > 0.0) || segments_.empty()) return none;
+DriveParametricModel::SteeringEffect DriveParametricModel::steering_noise_effect(const Eigen::VectorXd& theta) const {
+  const auto outputs = signed_index(compared_.size());
+  SteeringEffect out{Eigen::VectorXd::Zero(outputs), Eigen::VectorXd::Ones(outputs)};
+  if (!(steer_sigma_ > 0.0) || !(steer_error_share_ > 0.0) || segments_.empty()) return out;
   const SpeedRange range = speeds();
   const DriveNoise noise = noise_at(0.5 * (range.slowest + range.fastest), theta);
-  if (!(numerics::general_eigenvalues(noise.F).cwiseAbs().maxCoeff() < 1.0)) return none;
+  if (!(numerics::general_eigenvalues(noise.F).cwiseAbs().maxCoeff() < 1.0)) return out;
   const Eigen::MatrixXd P = numerics::discrete_lyapunov(noise.F, noise.G * noise.G.transpose()).X;
-  return (noise.C * P * noise.C.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
+  const Eigen::VectorXd variance = (noise.C * P * noise.C.transpose()).diagonal().cwiseMax(0.0);
+  out.sigma = variance.cwiseSqrt();
+  // C F^k P C' is the autocovariance at k samples; all of them together are 2 C (1 - F)^-1 P C' less that at 0.
+  const Eigen::MatrixXd rest = Eigen::MatrixXd::Identity(noise.F.rows(), noise.F.cols()) - noise.F;
+  const Eigen::VectorXd sum =
+      (noise.C * numerics::HouseholderQr(rest).solve(Eigen::MatrixXd(P * noise.C.transpose()))).diagonal();
+  for (Eigen::Index j = 0; j < outputs; ++j)
+    if (variance(j) > 0.0) out.memory(j) = std::max(1.0, 2.0 * sum(j) / variance(j) - 1.0);
+  return out;
 }
 
 bool DriveParametricModel::moves_loads() const {

@@ -34,10 +34,10 @@ inline constexpr double kPedalBand_Hz = 2.0;
 /// segment, axle loads move with the speed and with its derivative (the recorded speed's below kPedalBand_Hz).
 ///
 /// Outputs: yaw_rate; accel_y at the sensor's place, a_y + x r' - y r^2 - z phi'', with g phi where the body rolls and
-/// gravity's share was not taken off; lateral_velocity; and of a body that rolls roll and roll_rate; each where it is
-/// recorded. Integrated by RK4 with steps of at most 10 ms and two fifths of the bicycle's fastest time constant at the
-/// start. Delays shift inputs and outputs by cubic interpolation. The mass only scales C_f, C_r and I_z: it is never
-/// free.
+/// gravity's share was not taken off; lateral_velocity, v, of course and heading v + u bias - delay a_y; and of a body
+/// that rolls roll and roll_rate; each where it is recorded. Integrated by RK4 with steps of at most 10 ms and two
+/// fifths of the bicycle's fastest time constant at the start. Delays shift inputs and outputs by cubic interpolation.
+/// The mass only scales C_f, C_r and I_z: it is never free.
 ///
 /// Noise of the recorded steering would take some of every gain away. By default the steering is therefore low-passed
 /// to its own band (`numerics::band_limited`), and the outputs are not; the noise left in that band moves the model,
@@ -87,9 +87,14 @@ class DriveParametricModel : public estimation::AutodiffModel<DriveParametricMod
   /// it is of the signals, which acts on the outputs of its sample too, and white noise of the outputs. Empty where
   /// outputs are delayed, smoothed, or the steering has no noise.
   [[nodiscard]] DriveWhitening whitening(const Eigen::VectorXd& theta) const;
-  /// Standard deviations that what is left of the steering's noise gives the outputs at `theta`, at the mean speed of
-  /// the segments; 0 without noise, or where the vehicle is unstable there.
-  [[nodiscard]] Eigen::VectorXd steering_noise_sigmas(const Eigen::VectorXd& theta) const;
+  /// What noise of the steering does to each output: its standard deviation, and in how many samples it is one
+  /// observation (variance of the mean of many over that of as many independent ones).
+  struct SteeringEffect {
+    Eigen::VectorXd sigma, memory;
+  };
+  /// Of what is left of that noise at `theta`, at the mean speed of the segments; 0 and 1 without noise, or where the
+  /// vehicle is unstable there.
+  [[nodiscard]] SteeringEffect steering_noise_effect(const Eigen::VectorXd& theta) const;
   /// The model whose outputs, and what is compared with them, go through a filter.
   [[nodiscard]] DriveParametricModel weighed(DriveWhitening whitening) const;
 

@@ -67,7 +67,8 @@ class RegressionRows {
       const double spread = signal.rate_Hz > 0.0 ? std::max(1.0, s_.grid.rate_Hz() / signal.rate_Hz) : 1.0;
       variance_[i] = signal.sigma * signal.sigma * spread;
     }
-    out_.direct = s_[DriveSignal::kLateralVelocity].available();
+    // One made of a course may be late, and of a heading turned: only the drive model knows of that.
+    out_.direct = s_[DriveSignal::kLateralVelocity].available() && !s_.lateral_by_course;
     // Gravity's share of a lean is in accel_y where it was not taken off; the lean's rate alone does not tell it.
     has_roll_ = s_.gravity_removed && (s_[DriveSignal::kRoll].available() || s_[DriveSignal::kRollRate].available());
     out_.filter = {.rate_Hz = s_.grid.rate_Hz(), .pass_Hz = pass_Hz, .stop_Hz = 2.0 * pass_Hz, .attenuation_dB = 20.0};

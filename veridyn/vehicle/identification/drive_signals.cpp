@@ -9,6 +9,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/statistics.hpp"
+#include "veridyn/vehicle/identification/course_lateral_velocity.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -309,6 +310,21 @@ DriveSignals prepare_drive_signals(const recording::MappedRecording& mapped, con
   }
   out[DriveSignal::kLateralVelocity] =
       lateral_velocity(mapped, out.grid, options, out[DriveSignal::kSpeed].value, out[DriveSignal::kYawRate].value);
+  const Channel *course = find_channel(mapped, "course"), *direction = find_channel(mapped, "yaw");
+  if (course != nullptr && direction != nullptr && !out[DriveSignal::kLateralVelocity].available()) {
+    CourseLateralVelocity made = course_lateral_velocity({.course = *course,
+                                                          .yaw = *direction,
+                                                          .speed = out[DriveSignal::kSpeed].value,
+                                                          .yaw_rate = out[DriveSignal::kYawRate].value,
+                                                          .speed_sigma = out[DriveSignal::kSpeed].sigma,
+                                                          .yaw_rate_sigma = out[DriveSignal::kYawRate].sigma,
+                                                          .grid = out.grid,
+                                                          .position = options.velocity_position});
+    out.lateral_by_course = made.signal.available();
+    if (const auto given = recording::given_noise(options.noise, "lateral_velocity")) made.signal.sigma = *given;
+    out[DriveSignal::kLateralVelocity] = std::move(made.signal);
+    out.notes.push_back(std::move(made.note));
+  }
   const Channel* x = find_channel(mapped, "pos_x");
   const Channel* y = find_channel(mapped, "pos_y");
   if (x != nullptr && y != nullptr) {

@@ -47,7 +47,8 @@ struct DriveSignalOptions {
   double rolling_radius = 0.0;  ///< `rolling_radius` [m]: speed from the rear wheels where there is no `speed`
   /// `accel_position = [x, y, z]`: of the accelerometer from the centre of gravity, forward, left, up [m].
   std::array<double, 3> accel_position{};
-  /// `velocity_position`: how far ahead of the centre of gravity `lateral_velocity` and `sideslip` are measured [m].
+  /// `velocity_position`: how far ahead of the centre of gravity `lateral_velocity`, `sideslip` and `course` are
+  /// measured [m].
   double velocity_position = 0.0;
   /// `roll_gradient` [rad/(m/s^2)]: how far the body leans outward per lateral acceleration. A sensor fixed to the
   /// body then shows (1 + g roll_gradient) a_y; 5 deg per g (0.0089) make 8.7 % of it, which would all be read as
@@ -72,10 +73,14 @@ struct DriveSignals : recording::GridSignals<DriveSignal, kDriveSignals> {
   bool gravity_removed = false;  ///< from roll or roll gradient
   /// By which accel_y was divided through 1 + g times it; 0: not by a gradient [rad/(m/s^2)].
   double roll_gradient = 0.0;
+  /// Whether the lateral velocity is made of course and heading (`course_lateral_velocity`), whose offset and delay the
+  /// drive model then estimates.
+  bool lateral_by_course = false;
 };
 
 /// Resamples the mapped channels to one grid and derives what is missing: steering from the hand wheel, speed from the
-/// rear wheels (or, without them, the front wheels), yaw rate from `gyro_z`, lateral velocity from `sideslip`.
+/// rear wheels (or, without them, the front wheels), yaw rate from `gyro_z`, lateral velocity from `sideslip`, or from
+/// speed, course and heading.
 /// @throws InputError when yaw rate, speed or steering is missing (the latter only with `needs_steer`), a signal holds
 /// no numeric values, the yaw rate is slower than 5 Hz, or accel_y goes against yaw_rate x speed (a sign or frame
 /// error).

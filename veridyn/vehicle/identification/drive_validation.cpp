@@ -27,6 +27,9 @@ struct Pairs {
   }
 };
 
+/// Samples over which a residual is looked at for its memory.
+constexpr std::size_t kLongestMemory = 200;
+
 constexpr auto place_of(DriveUnknown u) { return static_cast<Eigen::Index>(u); }
 
 struct PlanePath {
@@ -159,7 +162,13 @@ estimation::PredictedQuantity predicted_quantity(const char* name, const char* u
   estimation::PredictedQuantity q{name, unit, numerics::fit_measures(pairs.measured, pairs.model), kNaN};
   std::vector<double> residual(pairs.measured.size());
   for (std::size_t k = 0; k < residual.size(); ++k) residual[k] = pairs.measured[k] - pairs.model[k];
-  if (residual.size() > 10) q.lag1 = numerics::autocorrelation(residual, 1, pairs.span).value[1];
+  if (residual.size() <= 10) return q;
+  const std::vector<double> r =
+      numerics::autocorrelation(residual, std::min(kLongestMemory, residual.size() - 1), pairs.span).value;
+  q.lag1 = r[1];
+  q.long_run = 1.0;
+  // Beyond its first zero an autocorrelation is mostly its own error.
+  for (std::size_t k = 1; k < r.size() && r[k] > 0.0; ++k) q.long_run += 2.0 * r[k];
   return q;
 }
 

@@ -223,6 +223,7 @@ estimation::Estimate make_vehicle_estimate(const VehicleIdentification& identifi
       out.fit[q.name + ".r2"] = q.fit.r2;
       out.fit[q.name + ".rmse"] = q.fit.rmse;
       if (std::isfinite(q.lag1)) out.fit[q.name + ".lag1"] = q.lag1;
+      if (std::isfinite(q.long_run)) out.fit[q.name + ".long_run"] = q.long_run;
     }
   }
   for (const estimation::PredictedQuantity& q : identification.validation.quantities)

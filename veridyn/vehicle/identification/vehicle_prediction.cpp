@@ -20,6 +20,7 @@ Eigen::VectorXd fit_drive_biases(const DriveSignals& signals, std::span<const Ti
   biases_only.free.fill(false);
   for (const DriveUnknown u : {DriveUnknown::kSteerBias, DriveUnknown::kYawRateBias, DriveUnknown::kAccelYBias})
     biases_only.free[u] = true;
+  biases_only = with_course(std::move(biases_only), signals.lateral_by_course);
   for (const DriveUnknown u : {DriveUnknown::kCf, DriveUnknown::kCr, DriveUnknown::kIz, DriveUnknown::kA})
     biases_only.start[u] = kNaN;
   const DriveParametricModel model(signals, spans, vehicle, biases_only);
