@@ -181,15 +181,26 @@ std::optional<Flaw> is_clipped(const Sampled& channel) {
               "use a sensor with a larger range, or gentler manoeuvres"};
 }
 
-/// Between any two values; infinite when there is only one.
-double smallest_step(const std::vector<Run>& runs) {
+/// Between any two of every `stride`-th value; infinite when there is only one.
+double smallest_step_of(const std::vector<Run>& runs, std::size_t stride) {
   std::vector<double> values;
-  for (const Run& run : runs) values.push_back(run.value);
+  for (std::size_t i = 0; i < runs.size(); i += stride) values.push_back(runs[i].value);
   std::ranges::sort(values);
   double step = kInfinity;
   for (std::size_t i = 1; i < values.size(); ++i)
     if (values[i] > values[i - 1]) step = std::min(step, values[i] - values[i - 1]);
   return step;
+}
+
+/// Between any two values; infinite when there is only one. Where a few thousand of them come as close as `enough`,
+/// that of these: hours of noise need not be sorted to know that they are not coarse.
+double smallest_step(const std::vector<Run>& runs, double enough) {
+  constexpr std::size_t kSome = 4096;
+  if (runs.size() > 2 * kSome) {
+    const double step = smallest_step_of(runs, runs.size() / kSome);
+    if (step <= enough) return step;
+  }
+  return smallest_step_of(runs, 1);
 }
 
 std::optional<Flaw> is_coarse(const Sampled& channel) {
@@ -202,7 +213,7 @@ std::optional<Flaw> is_coarse(const Sampled& channel) {
   }
   const auto n = static_cast<double>(runs.size());
   const double deviation = std::sqrt(std::max(0.0, squares / n - sum * sum / (n * n)));
-  const double step = smallest_step(runs);
+  const double step = smallest_step(runs, deviation / kFewestSteps);
   if (!std::isfinite(step) || !(deviation < kFewestSteps * step)) return std::nullopt;
   return Flaw{
       "coarse samples",
@@ -241,7 +252,8 @@ std::vector<std::size_t> spikes_in(std::span<const double> x, double least) {
 std::optional<Flaw> has_spikes(const Sampled& sampled, std::span<const TimeSpan> spans) {
   if (sampled.typical >= kHeld) return std::nullopt;
   const auto [low, high] = std::ranges::minmax(sampled.runs, {}, &Run::value);
-  const double least = std::max(kSpikeOfRange * (high.value - low.value), 3.0 * smallest_step(sampled.runs));
+  const double of_range = kSpikeOfRange * (high.value - low.value);
+  const double least = std::max(of_range, 3.0 * smallest_step(sampled.runs, of_range / 3.0));
   const std::span<const double> times = sampled.channel->times();
   std::vector<double> at;
   for (const TimeSpan& span : spans) {

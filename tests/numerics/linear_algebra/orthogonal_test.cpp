@@ -10,11 +10,20 @@ TEST(HouseholderQr, SplitsAMatrixIntoAnOrthogonalAndATriangularFactor) {
   const HouseholderQr qr(A);
   const Eigen::MatrixXd Q = qr.Q();
   EXPECT_TRUE((Q.transpose() * Q).isIdentity(1e-13));
+  EXPECT_TRUE(qr.thin_Q().isApprox(Q.leftCols(3), 1e-14));
   EXPECT_TRUE(qr.R().isUpperTriangular());
   EXPECT_TRUE((Q.leftCols(3) * qr.R()).isApprox(A, 1e-13));
   const Eigen::VectorXd b = Eigen::VectorXd::Random(6);
   EXPECT_TRUE(qr.apply_transposed(b).isApprox(Q.transpose() * b, 1e-13));
   EXPECT_TRUE(qr.apply_transposed(A).isApprox(Q.transpose() * A, 1e-13));
+}
+
+// An hour of flight has so many rows: the square factor would take 80 GB.
+TEST(HouseholderQr, SpansTheColumnsOfATallMatrixInItsOwnMemory) {
+  const Eigen::MatrixXd A = Eigen::MatrixXd::Random(100'000, 4);
+  const Eigen::MatrixXd Q = HouseholderQr(A).thin_Q();
+  EXPECT_TRUE((Q.transpose() * Q).isIdentity(1e-12));
+  EXPECT_TRUE((Q * (Q.transpose() * A)).isApprox(A, 1e-12));
 }
 
 // The straight line through (0, 1), (1, 2), (2, 4) that is closest in the mean square: 5/6 + 3/2 x.

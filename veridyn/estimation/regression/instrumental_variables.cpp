@@ -19,7 +19,7 @@ InstrumentalEstimate instrumental_variables(const RegressionData& data, const Ro
   const numerics::HouseholderQr qr{Eigen::MatrixXd(instruments)};
   const Eigen::VectorXd pivots = qr.R().diagonal().cwiseAbs();
   if (!(pivots.minCoeff() > 1e-10 * pivots.maxCoeff())) return out;
-  const Eigen::MatrixXd Q = qr.Q().leftCols(instruments.cols());
+  const Eigen::MatrixXd Q = qr.thin_Q();
   const RowMatrix projected = Q * (Q.transpose() * data.regressors);
   const auto rows = static_cast<double>(data.rows());
   const Eigen::RowVectorXd mean = data.regressors.colwise().mean();

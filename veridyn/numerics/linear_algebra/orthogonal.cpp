@@ -30,6 +30,11 @@ Eigen::MatrixXd HouseholderQr::Q() const {
   return Eigen::householderSequence(reflectors_, coefficients_) * Eigen::MatrixXd::Identity(n, n);
 }
 
+Eigen::MatrixXd HouseholderQr::thin_Q() const {
+  return Eigen::householderSequence(reflectors_, coefficients_) *
+         Eigen::MatrixXd::Identity(reflectors_.rows(), R_.rows());
+}
+
 Eigen::MatrixXd HouseholderQr::apply_transposed(const Eigen::MatrixXd& B) const {
   VERIDYN_ASSERT(B.rows() == reflectors_.rows());
   return Eigen::householderSequence(reflectors_, coefficients_).adjoint() * B;

@@ -15,6 +15,8 @@ class HouseholderQr {
   [[nodiscard]] const Eigen::MatrixXd& R() const { return R_; }
   /// The square orthogonal factor: the first columns span A, the others its complement.
   [[nodiscard]] Eigen::MatrixXd Q() const;
+  /// Its first columns, as many as A has, in memory of the size of A.
+  [[nodiscard]] Eigen::MatrixXd thin_Q() const;
   /// Q' B
   [[nodiscard]] Eigen::MatrixXd apply_transposed(const Eigen::MatrixXd& B) const;
   [[nodiscard]] Eigen::VectorXd apply_transposed(const Eigen::VectorXd& b) const;
