@@ -45,9 +45,7 @@ void finish_drive_study(const StudyTable& root, const Progress& progress, DriveT
     const StudyTable data = root.table("data");
     recording::check_study_data(data, vehicle::standard_drive_channels());
     static_cast<void>(data.text_or("frame", ""));
-    for (const char* key : {"runs", "holdout_runs"}) {
-      if (data.has(key)) static_cast<void>(data.files(key));
-    }
+    for (const StudyTable& run : data.tables("run")) static_cast<void>(run.text_or("frame", ""));
   }
   static_cast<void>(vehicle::DriveSignalOptions::read(root.table_or_empty("signals")));
   static_cast<void>(vehicle::DriveSegmentOptions::read(root.table_or_empty("segments")));

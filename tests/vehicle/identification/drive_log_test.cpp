@@ -1,8 +1,13 @@
 #include "veridyn/vehicle/identification/drive_log.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "tests/support/temporary_folder.hpp"
 #include "tests/vehicle/changed_drive.hpp"
+#include "veridyn/core/files.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -37,6 +42,57 @@ TEST(DriveLog, TurnsAFrdRecordingIntoFlu) {
   EXPECT_EQ(prepare_drive_signals(by_study, {})[DriveSignal::kYawRate].value, a[DriveSignal::kYawRate].value);
   EXPECT_NE(why([&] { static_cast<void>(map_drive_channels(frd, StudyTable(), "ned")); }).find("'flu'"),
             std::string::npos);
+}
+
+/// A drive of 20 s that turns at a constant rate.
+std::string table_of(const char* header, double yaw_rate) {
+  std::string text = std::string(header) + "\n";
+  for (int k = 0; k <= 200; ++k) text += fmt::format("{},{},{},{},{}\n", 0.1 * k, 0.01, 20, yaw_rate, 20 * yaw_rate);
+  return text;
+}
+
+TEST(DriveLog, TakesRunsWithNamesFramesAndTimesOfTheirOwn) {
+  const test::TemporaryFolder folder;
+  write_file(folder.path() / "a.csv", table_of("time,delta,u,r,ay", 0.1));
+  write_file(folder.path() / "b.csv", table_of("t,steer_rad,v,yawrate,lat", -0.2));
+  write_file(folder.path() / "c.csv", table_of("time,delta,u,r,ay", 0.3));
+  const Study study = Study::parse(
+      "[data]\nframe = 'flu'\nruns = ['a.csv']\nholdout_runs = ['c.csv']\n"
+      "[data.map]\nsteer = { channel = 'delta', unit = 'rad' }\nspeed = { channel = 'u', unit = 'm/s' }\n"
+      "yaw_rate = { channel = 'r', unit = 'rad/s' }\naccel_y = { channel = 'ay', unit = 'm/s^2' }\n"
+      "[[data.run]]\nfile = 'b.csv'\nframe = 'frd'\nfrom = 5\nto = 15\nholdout = true\n"
+      "map = { steer = { channel = 'steer_rad', unit = 'rad' }, speed = { channel = 'v', unit = 'm/s' }, yaw_rate = { "
+      "channel = 'yawrate', unit = 'rad/s' }, accel_y = { channel = 'lat', unit = 'm/s^2' } }\n",
+      "study.toml", folder.path());
+  const DriveLog log = read_drive_log(study.root().table("data"));
+  study.root().finish();
+  ASSERT_EQ(log.runs.size(), 3U);
+  EXPECT_NEAR(log.runs[0].duration(), 20.0, 1e-9);
+  EXPECT_NEAR(log.runs[1].duration(), 10.0, 1e-9);
+  ASSERT_EQ(log.holdout_runs.size(), 2U);
+  EXPECT_EQ(log.holdout_runs[0].begin, log.runs[1].begin);
+  EXPECT_EQ(log.inputs.size(), 3U);
+  const Channel& yaw_rate = log.mapped.recording.at("yaw_rate");
+  const auto at = [&](double t) {
+    const auto stamps = yaw_rate.times();
+    return yaw_rate.value[std::ranges::lower_bound(stamps, t - 1e-9) - stamps.begin()];
+  };
+  EXPECT_EQ(at(log.runs[0].begin), 0.1);
+  EXPECT_EQ(at(log.runs[1].begin), 0.2) << "turned from frd";
+  EXPECT_EQ(at(log.runs[2].begin), 0.3);
+  EXPECT_EQ(log.mapped.recording.at("speed").value[0], 20.0);
+}
+
+TEST(DriveLog, RefusesRunsThatMakeNoSense) {
+  const test::TemporaryFolder folder;
+  write_file(folder.path() / "a.csv", table_of("time,steer,speed,yaw_rate,accel_y", 0.1));
+  const auto refusal = [&](const std::string& data) {
+    const Study study = Study::parse("[data]\n" + data, "study.toml", folder.path());
+    return why([&] { static_cast<void>(read_drive_log(study.root().table("data"))); });
+  };
+  EXPECT_NE(refusal("holdout_runs = ['a.csv']\n").find("leaves no recording to identify from"), std::string::npos);
+  EXPECT_NE(refusal("runs = ['a.csv', 'a.csv']\n").find("data.runs: names"), std::string::npos);
+  EXPECT_NE(refusal("[[data.run]]\nfrom = 3\n").find("data.run[0].file: is missing"), std::string::npos);
 }
 
 }  // namespace

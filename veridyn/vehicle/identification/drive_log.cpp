@@ -94,6 +94,28 @@ JoinedRuns joined(const std::vector<Recording>& runs) {
   return {std::move(out), std::move(spans)};
 }
 
+/// With the names and the frame that a run has, or else all of them.
+recording::MappedRecording map_run(const Recording& recording, const StudyTable& own, const StudyTable& shared) {
+  const StudyTable &map = recording::table_with("map", own, shared),
+                   &frame = recording::table_with("frame", own, shared);
+  return map_drive_channels(recording, map.table_or_empty("map"), frame.text_or("frame", ""),
+                            frame.has("frame") ? frame.place("frame") : std::string());
+}
+
+/// Runs that were mapped each by itself, as one: what was noted of one of them counts for all.
+recording::MappedRecording together(const std::vector<recording::MappedRecording>& runs, Recording recording) {
+  recording::MappedRecording out = runs.front();
+  for (const recording::MappedRecording& run : runs) {
+    for (const recording::ChannelOrigin& origin : run.origins)
+      if (std::ranges::find(out.origins, origin.channel, &recording::ChannelOrigin::channel) == out.origins.end())
+        out.origins.push_back(origin);
+    for (const std::string& note : run.notes)
+      if (std::ranges::find(out.notes, note) == out.notes.end()) out.notes.push_back(note);
+  }
+  out.recording = std::move(recording);
+  return out;
+}
+
 }  // namespace
 
 std::span<const recording::StandardChannel> standard_drive_channels() {
@@ -162,33 +184,22 @@ recording::MappedRecording map_drive_channels(const Recording& recorded, const S
 
 DriveLog read_drive_log(const StudyTable& data) {
   DriveLog log;
-  Recording recording;
-  if (data.has("runs")) {
-    if (data.has("file") || data.has("files")) data.fail("runs", "and `file` exclude each other");
-    std::vector<std::filesystem::path> paths = data.files("runs");
-    if (paths.empty()) data.fail("runs", "is empty");
-    const std::size_t for_identification = paths.size();
-    if (data.has("holdout_runs")) {
-      const std::vector<std::filesystem::path> more = data.files("holdout_runs");
-      paths.insert(paths.end(), more.begin(), more.end());
-    }
-    std::vector<Recording> runs;
-    for (const std::filesystem::path& path : paths) {
-      runs.push_back(recording::without_missing(recording::read_study_file(data, path)));
-      runs.back().source = path.string();
-    }
-    JoinedRuns all = joined(runs);
-    recording = std::move(all.recording);
-    log.runs = std::move(all.spans);
-    log.holdout_runs.assign(log.runs.begin() + for_identification, log.runs.end());
-    log.inputs = paths;
-  } else {
-    recording = recording::read_study_data(data);
-    log.inputs = data.files(data.has("file") ? "file" : "files");
-    log.runs = {recording.span()};
+  const std::vector<recording::StudyRecording> runs = recording::read_study_recordings(data);
+  for (const recording::StudyRecording& run : runs)
+    log.inputs.insert(log.inputs.end(), run.files.begin(), run.files.end());
+  const bool own_names = std::ranges::any_of(
+      runs, [](const recording::StudyRecording& run) { return run.own.has("map") || run.own.has("frame"); });
+  std::vector<Recording> recordings;
+  std::vector<recording::MappedRecording> mapped;
+  for (const recording::StudyRecording& run : runs) {
+    if (own_names) mapped.push_back(map_run(run.recording, run.own, data));
+    recordings.push_back(own_names ? mapped.back().recording : run.recording);
   }
-  log.mapped = map_drive_channels(recording, data.table_or_empty("map"), data.text_or("frame", ""),
-                                  data.has("frame") ? data.place("frame") : std::string());
+  JoinedRuns all = joined(recordings);
+  log.runs = std::move(all.spans);
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    if (runs[i].held_out) log.holdout_runs.push_back(log.runs[i]);
+  log.mapped = own_names ? together(mapped, std::move(all.recording)) : map_run(all.recording, data, data);
   return log;
 }
 

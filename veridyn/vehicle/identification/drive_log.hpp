@@ -40,11 +40,12 @@ struct DriveLog {
                                                             std::string_view frame = {},
                                                             std::string_view frame_place = {});
 
-/// Reads `[data]`: `frame`, `[data.map]`, and what recording::read_study_data reads; or several drives of the same
-/// vehicle,
+/// Reads `[data]`: `frame`, `[data.map]`, and what recording::read_study_recordings reads: one drive, or several of the
+/// same vehicle,
 ///
 ///     runs = ["run1.csv", "run2.csv"]       # for identification (and hold-out, where nothing else is named for that)
 ///     holdout_runs = ["run3.csv"]           # never used by identification
+///     [[data.run]]                          # one that needs keys of its own: file, from, to, part, frame, map, ...
 ///
 /// which are laid one after the other on the time axis with 10 s between them.
 /// @throws InputError
