@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "tests/aircraft/simulated_flight.hpp"
 #include "tests/aircraft/stripped_recording.hpp"
 #include "tests/support/refusal.hpp"
 #include "veridyn/aircraft/track_flight.hpp"
@@ -61,6 +62,45 @@ TEST(AircraftStudy, IdentifiesWhatTheRecordedSensorsShow) {
   const FlightAnalysis pitching =
       identify(stripped(study, {"accel_x", "accel_y", "accel_z", "beta", "roll", "pitch", "yaw"}), silent);
   EXPECT_EQ(identified_in(pitching), (std::vector<std::string>{"Cm"}));
+}
+
+/// A flight of an aircraft whose rudder does nothing once it is trimmed, recorded as never moved.
+Recording flown_without_rudder() {
+  SimulationOptions o;
+  o.subject = builtin_subject("unatrap", "test");
+  AeroModel model = o.subject.model;
+  for (auto& coefficient : model.coefficients) {
+    if (!coefficient) continue;
+    for (std::size_t i = 0; i < coefficient->size(); ++i)
+      if (coefficient->terms[i].expression == "dr") coefficient->values[i] = 0.0;
+  }
+  o.changes = {{.time = 0.01, .model = model, .text = "the rudder does nothing"}};
+  o.duration = 150.0;
+  o.airspeed = 20.0;
+  o.seed = 3;
+  Progress silent;
+  Recording recording = simulate(o, silent).measured;
+  Channel rudder = recording.at("rudder");
+  std::ranges::fill(rudder.value, 0.0);
+  recording.set(std::move(rudder));
+  return recording;
+}
+
+// Aileron alone does not tell what yaw rate and sideslip do to Cl and Cn: they are not excited, and nothing is
+// rejected.
+TEST(AircraftStudy, ASurfaceThatIsZeroThroughoutRejectsNothing) {
+  Progress silent;
+  FlightStudy study = calm_study(150.0, "");
+  study.mapped.recording = flown_without_rudder();
+  const FlightAnalysis analysis = identify(study, silent);
+  EXPECT_EQ(identified_in(analysis), (std::vector<std::string>{"CL", "CD", "CY", "Cm"}));
+  for (const CoefficientResult& r : analysis.coefficients)
+    EXPECT_NE(r.verdict, estimation::GroupVerdict::kRejected) << r.reason;
+  for (const char* name : {"CY_dr", "Cl_dr", "Cn_dr"}) {
+    const estimation::Parameter* const p = analysis.estimate.find(name);
+    ASSERT_NE(p, nullptr) << name;
+    EXPECT_EQ(p->status, estimation::ParameterStatus::kNotExcited) << name;
+  }
 }
 
 TEST(AircraftStudy, DoesWithoutAFilterWhereThatIsAskedFor) {
