@@ -52,11 +52,18 @@ int export_aircraft(const StudyRun& run) {
   const std::string toml = aircraft::write_subject_toml(subject);
   if (desired("toml")) folder.write("subject.toml", graded ? estimation::graded_toml(toml, estimate->judgement) : toml);
   if (desired("csv")) folder.write("model.csv", model_csv(subject));
+  std::string note;
   if (desired("jsbsim")) {
-    const std::string xml = aircraft::write_jsbsim(subject);
-    folder.write("jsbsim.xml", graded ? graded_xml(xml, estimate->judgement) : xml);
+    try {
+      const std::string xml = aircraft::write_jsbsim(subject);
+      folder.write("jsbsim.xml", graded ? graded_xml(xml, estimate->judgement) : xml);
+    } catch (const InputError& refusal) {
+      // What is known of an aircraft goes into the files that can hold a part of it.
+      if (format != "all") throw;
+      note = fmt::format("no jsbsim.xml: {}", refusal.what());
+    }
   }
-  publish_export(run, folder, {}, estimate);
+  publish_export(run, folder, {}, estimate, note);
   return kDone;
 }
 

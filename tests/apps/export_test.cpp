@@ -92,6 +92,22 @@ TEST_F(Export, MakesUnknownWhatWasNotIdentified) {
   }
 }
 
+// What JSBSim cannot fly is written as far as it is known by the formats that can say "unknown".
+TEST_F(Export, OfAnAircraftThatIsPartlyIdentifiedWritesAllButJsbsim) {
+  const nlohmann::json lift =
+      nlohmann::json::array({parameter("CL_alpha", 4.5), parameter("Cm_alpha", nullptr, "rejected")});
+  std::string spoken = with(lift, "all");
+  spoken.erase(spoken.find(" --quiet"), std::string(" --quiet").size());
+  const Outcome all = run(spoken);
+  EXPECT_EQ(all.exit_code, 0) << all.text;
+  EXPECT_THAT(all.text, HasSubstr("JSBSim needs every parameter, these have no value: CD_0"));
+  for (const char* name : {"model.json", "subject.toml", "model.csv"})
+    EXPECT_THAT(read_file(in_out(name)), HasSubstr("4.5")) << name;
+  EXPECT_THAT(read_file(in_out("subject.toml")), HasSubstr("unknown"));
+  EXPECT_FALSE(std::filesystem::exists(in_out("jsbsim.xml")));
+  expect_refusal(with(lift, "jsbsim"), "JSBSim needs every parameter");
+}
+
 constexpr const char* kEffectiveSentence =
     "The recording agrees with itself and with physics; the parameters must not be taken for physical constants; the "
     "model predicts held-out data, with care.";
