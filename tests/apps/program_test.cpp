@@ -31,6 +31,34 @@ class Program : public ProgramTest {
       "[[flight.manoeuvre]]\nkind = \"multisine\"\nstart = 45\nduration = 40\nsurfaces = [\"aileron\", \"rudder\"]\n";
 };
 
+// Whenever it is stopped, an identification has left all of its results or none.
+TEST_F(Program, AnInterruptedIdentificationOfAnAircraftLeavesNothingHalfDone) {
+  const std::string flight = file("flight.toml", std::string(kFlight) +
+                                                     "[identify]\nbootstrap = 100\noutput_error = true\n"
+                                                     "[validate]\nopen_loop = \"10 s\"\n");
+  const std::string to = " --out " + (folder_ / "out").string();
+  std::size_t stopped_early = 0;
+  for (const char* stage :
+       {"simulating the flight", "aligning sensor delays", "checking the recording", "identifying coefficients",
+        "output error", "bootstrap", "flying open loop", "validating on the hold-out", "writing the results"}) {
+    SCOPED_TRACE(stage);
+    fs::remove_all(folder_ / "out");
+    const Outcome stopped = run_interrupted_after(stage, 1, "identify " + flight + to, folder_);
+    if (stopped.exit_code == 1) {
+      ++stopped_early;
+      EXPECT_THAT(stopped.text, testing::EndsWith("veridyn: interrupted, nothing was written\n"));
+      EXPECT_FALSE(fs::exists(folder_ / "out"));
+      continue;
+    }
+    EXPECT_EQ(stopped.exit_code, 0) << "the signal came too late: " << stopped.text;
+    for (const char* name : {"report.html", "estimate.json", "subject.toml", "run.json"})
+      EXPECT_TRUE(fs::exists(folder_ / "out" / name)) << name;
+    for (const auto& entry : fs::directory_iterator(folder_ / "out"))
+      EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path();
+  }
+  EXPECT_GE(stopped_early, 3U);
+}
+
 TEST_F(Program, ShowsItsCommandsAndNoOthers) {
   const Outcome help = run("--help");
   EXPECT_EQ(help.exit_code, 0);
