@@ -35,6 +35,9 @@ int main(int count, char** arguments) {
     std::string twice = "\x07time,x\n";
     for (int i = 0; i < 24; ++i) twice += std::to_string(i % 12) + ",1\n";
     write("csv", twice, "restart");
+    write("csv_folder",
+          "timestamp,q[0]\n1000000,1\n1020000,1\n" + std::string(1, '\0') + "timestamp,p\n1000000,7\n1200000,8\n");
+    write("csv_folder", "\x02" + twice.substr(1) + '\0' + twice.substr(1) + '\0' + "time,x\n0,1\n1,2\n", "restart");
     write("unit_words", "degrees per sec^2");
     write("unit_words", "m/s\xC2\xB2", "utf8");
     write("number_table", "# of three runs\nrun,alpha[rad],CL,day\n1,0.1,0.4,Mon\n1,0.2,NaN,Mon\n2,-1e-1,,Tue\n");
