@@ -48,7 +48,7 @@ constexpr const char* kMovesMuscles = "`veridyn simulate` runs it";
 constexpr const char* kCuesIt = "`veridyn cue` drives the platform";
 constexpr const char* kNamesPlatform = "`veridyn init cueing` writes a study that puts a drive on one";
 
-constexpr std::array kTable = {
+constexpr std::array kRows = {
     // aircraft, vehicle, muscle, swing test, calibration, motion platform
     Row{"simulate", {simulate_aircraft, simulate_vehicle, simulate_muscle, kIdentifiesIt, kIdentifiesIt, kCuesIt}},
     Row{"reconstruct", {reconstruct_aircraft, kIdentifiesDrive, kMovesMuscles, kIdentifiesIt, kIdentifiesIt, kCuesIt}},
@@ -74,21 +74,22 @@ constexpr std::array kTable = {
 };
 
 constexpr auto kCommands = [] {
-  std::array<std::string_view, kTable.size()> names;
-  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kTable[i].command;
+  std::array<std::string_view, kRows.size()> names;
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kRows[i].command;
   return names;
 }();
 
-struct Names {
+struct DomainNames {
   const char* one;   ///< "a study of an aircraft"
   const char* many;  ///< "identify is for aircraft"
 };
-constexpr EnumArray<Domain, Names, kDomains> kNames = {Names{"an aircraft", "aircraft"},
-                                                       Names{"a vehicle", "vehicles"},
-                                                       Names{"a musculoskeletal model", "musculoskeletal models"},
-                                                       Names{"a swing test", "swing tests"},
-                                                       Names{"an air-data calibration", "air-data calibrations"},
-                                                       Names{"a motion platform", "motion platforms"}};
+constexpr EnumArray<Domain, DomainNames, kDomains> kNames = {
+    DomainNames{"an aircraft", "aircraft"},
+    DomainNames{"a vehicle", "vehicles"},
+    DomainNames{"a musculoskeletal model", "musculoskeletal models"},
+    DomainNames{"a swing test", "swing tests"},
+    DomainNames{"an air-data calibration", "air-data calibrations"},
+    DomainNames{"a motion platform", "motion platforms"}};
 
 /// "aircraft", "aircraft and vehicles", "aircraft, vehicles and swing tests".
 std::string domains_with(const Row& row) {
@@ -142,7 +143,7 @@ StudyRun parse_study(std::string command, const std::filesystem::path& path, std
 }
 
 int run_on_study(std::string_view command, const Arguments& arguments) {
-  const Row& row = *std::find_if(kTable.begin(), kTable.end(), [&](const Row& r) { return r.command == command; });
+  const Row& row = *std::find_if(kRows.begin(), kRows.end(), [&](const Row& r) { return r.command == command; });
   const std::string& path = arguments.text("STUDY");
   const bool first = launched_process().rank == 0;
   std::optional<StudyRun> parsed;

@@ -157,7 +157,7 @@ CourseLateralVelocity course_lateral_velocity(const CourseProblem& p) {
                     kSlowestCourse_mps));
   if (offset->range > kWanderingHeading)
     return unused(
-        fmt::format("going straight they differ now by this, now by that, by {:.1f} deg in all: the heading "
+        fmt::format("going straight their difference wanders by {:.1f} deg: the heading "
                     "is a compass's or drifts",
                     offset->range / kDegree));
   if (in_turns(difference, offset->value, p) < kSame) return unused("one of them is made of the other");
