@@ -423,6 +423,17 @@ TEST(DriveOpenLoop, FollowsHeadingAndPathOfTheCarItIsAndStraysFromAnother) {
   EXPECT_NEAR(exact.path.distance_m, 20.0 * 56.9, 25.0);
   EXPECT_EQ(exact.states.size(), 2U) << "the lateral velocity was not measured, and is not scored";
   EXPECT_GT(exact.windows[0].first_left_s, 56.0);
+  // The sensor's bias is neither the model's error nor a part of the heading.
+  Drive biased = drive;
+  for (double& r : biased.signals[DriveSignal::kYawRate].value) r += 0.02;
+  const DriveOpenLoop by_heading =
+      biased.driven(p, bicycle_estimate(p), {.times = {.duration_s = 60.0}, .offsets = {{DriveUnknown::kYawRateBias}}});
+  EXPECT_LT(by_heading.path.heading->at_end, 0.1 * kDegree);
+  EXPECT_LT(by_heading.path.position->at_end, 1.0);
+  biased.signals[DriveSignal::kYaw].value.clear();
+  const DriveOpenLoop by_positions =
+      biased.driven(p, bicycle_estimate(p), {.times = {.duration_s = 60.0}, .offsets = {{DriveUnknown::kYawRateBias}}});
+  EXPECT_LT(by_positions.path.position->at_end, 30.0) << "of 1140 m: the course of both ends has its sideslip";
   VehicleParameters<double> softer = p;
   softer.C_r *= 0.9;
   const DriveOpenLoop wrong = drive.driven(p, bicycle_estimate(softer), options);

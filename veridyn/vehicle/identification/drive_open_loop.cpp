@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -159,7 +160,49 @@ std::optional<double> yaw_period(const VehicleParameters<double>& p, const Drive
   return 2.0 * M_PI / std::sqrt(squared);
 }
 
-/// The simulated turning of the windows, whose yaw rate is without its sensor's bias.
+/// What the yaw rate's sensor reads too much, by the recorded heading; nothing where that is not recorded.
+std::optional<double> bias_by_heading(const DriveSignals& signals, const TimeSpan& span) {
+  const std::vector<double>&yaw = signals[DriveSignal::kYaw].value, &rate = signals[DriveSignal::kYawRate].value;
+  if (yaw.empty()) return std::nullopt;
+  double excess = 0.0, duration = 0.0;
+  const auto [begin, end] = signals.indices(span);
+  for (std::size_t k = begin + 1; k < end; ++k) {
+    const double step = signals.grid.step, turned = yaw[k] - yaw[k - 1], read = 0.5 * step * (rate[k] + rate[k - 1]);
+    if (!std::isfinite(turned) || !std::isfinite(read)) continue;
+    excess += read - turned;
+    duration += step;
+  }
+  return duration > 0.0 ? std::optional(excess / duration) : std::nullopt;
+}
+
+/// The same by the course of the recorded positions, second by second, whose sideslip at both ends is as small.
+std::optional<double> bias_by_positions(const DriveSignals& signals, const TimeSpan& span) {
+  constexpr double kLeastWay_m = 1.0, kLeastTime_s = 4.0;
+  const std::vector<double>&x = signals[DriveSignal::kX].value, &y = signals[DriveSignal::kY].value;
+  const std::vector<double>& rate = signals[DriveSignal::kYawRate].value;
+  if (x.empty() || y.empty()) return std::nullopt;
+  const double step = signals.grid.step;
+  const auto second = static_cast<std::size_t>(std::max(2.0, std::round(1.0 / step)));
+  double turned = 0.0, read = 0.0, last = kNaN, duration = 0.0;
+  const auto [begin, end] = signals.indices(span);
+  for (std::size_t k = begin; k + second < end; k += second) {
+    const double dx = x[k + second] - x[k], dy = y[k + second] - y[k];
+    const double course = std::hypot(dx, dy) > kLeastWay_m ? std::atan2(dy, dx) : kNaN;
+    // From the middle of the second before to that of this one.
+    double over = 0.0;
+    for (std::size_t i = k - std::min(k, second / 2); i < k + second / 2; ++i) over += step * rate[i];
+    const double turn = std::remainder(course - last, 2.0 * kPi);
+    last = course;
+    if (k == begin || !std::isfinite(turn) || !std::isfinite(over)) continue;
+    turned += turn;
+    read += over;
+    duration += step * static_cast<double>(second);
+  }
+  return duration >= kLeastTime_s ? std::optional((read - turned) / duration) : std::nullopt;
+}
+
+/// The simulated turning of the windows, whose yaw rate is without its sensor's bias: that by the heading, since what
+/// passes for a bias in the first seconds may be the model's error, else the window's own or the known one.
 std::vector<SimulatedTurning> turning_of(const DriveSignals& signals, std::span<const OpenLoopForecast> driven,
                                          std::span<const estimation::ModelOutput> outputs, double known_bias) {
   const auto column = [&](DriveSignal signal) {
@@ -171,6 +214,8 @@ std::vector<SimulatedTurning> turning_of(const DriveSignals& signals, std::span<
     double bias = known_bias;
     for (const estimation::SegmentParameter& p : f.window.start)
       if (p.name == kDriveUnknownNames[DriveUnknown::kYawRateBias]) bias = p.value;
+    const std::optional<double> by_heading = bias_by_heading(signals, f.window.span);
+    bias = by_heading ? *by_heading : bias_by_positions(signals, f.window.span).value_or(bias);
     SimulatedTurning motion{.first = signals.indices(f.window.span).first};
     motion.forecast_from = static_cast<std::size_t>(
         std::ranges::lower_bound(f.time, f.window.forecast_from - 0.5 * signals.grid.step) - f.time.begin());
