@@ -77,6 +77,15 @@ TEST(OpenLoopForecast, CountsAnErrorThatLastsOnceInTheFirstSeconds) {
   EXPECT_NEAR(f.sigma(50, 0), 0.1 * std::sqrt(1.0 + std::exp(-2.0 * kA * 5.0) / mean), 1e-9);
 }
 
+// Three of the 21 samples tell the same: seven observations.
+TEST(OpenLoopForecast, CountsAnErrorOfKnownMemoryOnceInThat) {
+  const OpenLoopForecast f =
+      forecast_of(Decay(decaying(101, kA, 0.0), kA), {.white = 1e-9, .lasting = 0.1, .memory = 3.0}, 0.0);
+  double mean = 0.0;
+  for (int k = 0; k <= 20; ++k) mean += std::exp(-2.0 * kA * 0.1 * k) / 21.0;
+  EXPECT_NEAR(f.sigma(50, 0), 0.1 * std::sqrt(1.0 + std::exp(-2.0 * kA * 5.0) / (7.0 * mean)), 1e-9);
+}
+
 TEST(OpenLoopForecast, HasThePriorOfAConditionThatDoesNotStay) {
   const double prior = 0.3, white = 0.01;
   const Decay decay(decaying(101, kA, 0.0), kA, kInfinity, prior);

@@ -12,6 +12,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/vehicle/identification/drive_parametric_model.hpp"
 #include "veridyn/vehicle/tyre/fiala_tyre.hpp"
+#include "veridyn/vehicle/vehicle_study.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -309,6 +310,28 @@ TEST(DriveOpenLoop, BandsHoldTheErrorsOfTheParameters) {
   }
   EXPECT_NEAR(inside, 0.95, 0.04);
   EXPECT_LT(without, 0.85) << "the covariance must matter";
+}
+
+// From one drive to another as `identify` and `validate` go: how long the residual's errors last is known, and counts.
+TEST(DriveOpenLoop, BandsOfIdentifiedModelsCoverOtherDrives) {
+  const Study study = Study::parse(
+      "[subject]\nkind = 'vehicle'\nmass = 1500\na = 1.2\nb = 1.5\n[data]\nframe = 'flu'\n"
+      "[identify]\nstructure = 'bicycle'\n[validate]\nopen_loop = '10 min'\n",
+      "study.toml");
+  const auto recorded = [](std::uint64_t seed, double length) {
+    return record_drive(lively_drive(family_car(), seed, 0.014, length), reference_drive_sensors(), seed);
+  };
+  Progress silent;
+  double inside = 0.0;
+  constexpr std::uint64_t kDrives = 10;
+  for (std::uint64_t seed = 1; seed <= kDrives; ++seed) {
+    const estimation::Estimate found = identify(read_study(study, recorded(seed, 60.0), silent), silent).estimate;
+    EXPECT_GT(found.fit.at("yaw_rate.long_run"), 3.0) << "noise of the steering lasts as long as the car takes";
+    const DriveOpenLoop driven =
+        validate(read_study(study, recorded(seed + 100, 120.0), silent), found, silent).open_loop;
+    inside += pooled_inside(driven) / static_cast<double>(kDrives);
+  }
+  EXPECT_NEAR(inside, 0.955, 0.015);
 }
 
 TEST(DriveOpenLoop, OfAWrongParameterLeavesItsBandsSoonAndTheRowSaysSo) {
