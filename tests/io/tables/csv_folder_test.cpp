@@ -40,7 +40,7 @@ TEST(CsvFolder, ReadsEachTableWithItsOwnStamps) {
 }
 
 /// Flights of 20 s and 30 s, a row every `step` [s], on a clock that restarts; x numbers the flight.
-std::string two_flights(double step) {
+std::string restarting_flights(double step) {
   std::string text = "timestamp,x\n";
   for (const int flight : {1, 2}) {
     const double end = flight == 1 ? 20.0 : 30.0;
@@ -51,8 +51,8 @@ std::string two_flights(double step) {
 
 TEST(CsvFolder, OfSeveralFlightsIsReadPartByPart) {
   const testing::TemporaryFolder folder;
-  (void)folder.write("log_vehicle_attitude_0.csv", two_flights(0.1));
-  (void)folder.write("log_sensor_baro_0.csv", two_flights(0.5));
+  (void)folder.write("log_vehicle_attitude_0.csv", restarting_flights(0.1));
+  (void)folder.write("log_sensor_baro_0.csv", restarting_flights(0.5));
   (void)folder.write("log_sensor_gps_0.csv", "timestamp,x\n1000000,1\n2000000,1\n");
   // In the second flight it stopped early, so that its longest part is the first.
   std::string early = "timestamp,x\n";

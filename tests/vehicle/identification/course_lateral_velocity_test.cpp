@@ -19,16 +19,16 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-constexpr double kStep = 0.02;
-constexpr std::size_t kSamples = 3000;
+constexpr double kCourseStep_s = 0.02;
+constexpr std::size_t kCourseSamples = 3000;
 
 /// Speed, yaw rate and lateral velocity of a drive in closed form: straight on for a third, then weaving.
-struct Motion {
+struct WeavingMotion {
   std::vector<double> time, u, r, v, psi;
 
-  Motion() {
-    for (std::size_t k = 0; k < kSamples; ++k) {
-      const double t = kStep * static_cast<double>(k), w = 0.5, turning = t < 20.0 ? 0.0 : t - 20.0;
+  WeavingMotion() {
+    for (std::size_t k = 0; k < kCourseSamples; ++k) {
+      const double t = kCourseStep_s * static_cast<double>(k), w = 0.5, turning = t < 20.0 ? 0.0 : t - 20.0;
       time.push_back(t);
       u.push_back(15.0 + 4.0 * std::sin(0.2 * t));
       r.push_back(0.2 * std::sin(w * turning));
@@ -39,7 +39,7 @@ struct Motion {
   [[nodiscard]] Channel course(double position, double sigma = 0.0) const {
     numerics::RandomStream noise(7, "course");
     std::vector<double> angles;
-    for (std::size_t k = 0; k < kSamples; ++k)
+    for (std::size_t k = 0; k < kCourseSamples; ++k)
       angles.push_back(std::remainder(psi[k] + std::atan((v[k] + position * r[k]) / u[k]) + sigma * noise.normal(),
                                       2.0 * std::numbers::pi));
     return make_channel("course", "rad", make_time_base(time), angles);
@@ -57,61 +57,61 @@ struct Motion {
                                     .yaw_rate = r,
                                     .speed_sigma = 0.1,
                                     .yaw_rate_sigma = 0.002,
-                                    .grid = {.begin = 0.0, .step = kStep, .count = kSamples},
+                                    .grid = {.begin = 0.0, .step = kCourseStep_s, .count = kCourseSamples},
                                     .position = position});
   }
 };
 
 TEST(CourseLateralVelocity, IsThatOfTheCentreOfGravityWhateverTheZeroOfTheHeadingAndThePlaceOfTheAntenna) {
-  const Motion m;
+  const WeavingMotion m;
   for (const double position : {0.0, 1.4, -0.8}) {
     for (const double offset : {0.0, 1.9, -3.1}) {
       const CourseLateralVelocity found = m.made(m.course(position), m.yaw(offset), position);
       ASSERT_TRUE(found.signal.available()) << found.note;
-      for (std::size_t k = 0; k < kSamples; ++k) ASSERT_NEAR(found.signal.value[k], m.v[k], 1e-9) << k;
+      for (std::size_t k = 0; k < kCourseSamples; ++k) ASSERT_NEAR(found.signal.value[k], m.v[k], 1e-9) << k;
     }
   }
   EXPECT_THAT(m.made(m.course(1.4), m.yaw(0.3), 1.4).note, HasSubstr("speed tan(course - yaw), moved by -1.4 m"));
 }
 
 TEST(CourseLateralVelocity, HasTheErrorThatItsNoisesMake) {
-  const Motion m;
+  const WeavingMotion m;
   const double sigma_course = 0.3 * kDegree, sigma_yaw = 0.1 * kDegree;
   const CourseLateralVelocity found = m.made(m.course(1.4, sigma_course), m.yaw(0.5, sigma_yaw), 1.4);
   ASSERT_TRUE(found.signal.available());
   std::vector<double> error;
-  for (std::size_t k = 0; k < kSamples; ++k) error.push_back(found.signal.value[k] - m.v[k]);
+  for (std::size_t k = 0; k < kCourseSamples; ++k) error.push_back(found.signal.value[k] - m.v[k]);
   // The exact channels of speed and yaw rate and a known place have a share of a tenth in what is stated.
   EXPECT_NEAR(found.signal.sigma, numerics::rms(error), 0.12 * numerics::rms(error));
 }
 
 TEST(CourseLateralVelocity, LeavesOutSlowAndReversingAndCountsHeldValuesOnce) {
-  Motion m;
+  WeavingMotion m;
   for (std::size_t k = 1500; k < 1600; ++k) m.u[k] = 1.0;
   const CourseLateralVelocity found = m.made(m.course(0.0), m.yaw(0.0), 0.0);
   EXPECT_TRUE(std::isnan(found.signal.value[1550]));
   EXPECT_TRUE(std::isfinite(found.signal.value[1650]));
-  const Motion even;
+  const WeavingMotion even;
   Channel held = even.course(0.0);
-  for (std::size_t k = 0; k < kSamples; ++k) held.value[k] = held.value[k - k % 10];
+  for (std::size_t k = 0; k < kCourseSamples; ++k) held.value[k] = held.value[k - k % 10];
   const CourseLateralVelocity slow = even.made(held, even.yaw(0.0), 0.0);
   EXPECT_NEAR(slow.signal.rate_Hz, 5.0, 0.1);
-  for (std::size_t k = 1000; k < kSamples - 20; ++k) ASSERT_NEAR(slow.signal.value[k], even.v[k], 0.02) << k;
+  for (std::size_t k = 1000; k < kCourseSamples - 20; ++k) ASSERT_NEAR(slow.signal.value[k], even.v[k], 0.02) << k;
   Channel backwards = even.course(0.0);
   for (std::size_t k = 2000; k < 2100; ++k) backwards.value[k] += std::numbers::pi;
   EXPECT_TRUE(std::isnan(even.made(backwards, even.yaw(0.0), 0.0).signal.value[2050]));
 }
 
 TEST(CourseLateralVelocity, IsNotMadeOfAHeadingThatWandersNorOfTheCourseItself) {
-  const Motion m;
+  const WeavingMotion m;
   Channel drifts = m.yaw(0.0);
-  for (std::size_t k = 0; k < kSamples; ++k) drifts.value[k] += 0.1 * m.time[k] / 20.0;
+  for (std::size_t k = 0; k < kCourseSamples; ++k) drifts.value[k] += 0.1 * m.time[k] / 20.0;
   EXPECT_FALSE(m.made(m.course(0.0), drifts, 0.0).signal.available());
   EXPECT_THAT(m.made(m.course(0.0), drifts, 0.0).note, HasSubstr("the heading is a compass's or drifts"));
   const CourseLateralVelocity copy = m.made(m.course(0.0), m.course(0.0), 0.0);
   EXPECT_FALSE(copy.signal.available());
   EXPECT_THAT(copy.note, HasSubstr("one of them is made of the other"));
-  Motion turning;
+  WeavingMotion turning;
   for (double& r : turning.r) r = 0.5;
   EXPECT_THAT(turning.made(turning.course(0.0), turning.yaw(0.0), 0.0).note, HasSubstr("hardly goes straight"));
 }
@@ -154,7 +154,7 @@ double course_shift(const Recording& recording) {
       .shift_s;
 }
 
-estimation::Estimate identified(const Recording& recording) {
+estimation::Estimate estimate_of_drive(const Recording& recording) {
   const Study study = Study::parse(
       "[subject]\nkind = 'vehicle'\nmass = 1500\na = 1.2\nb = 1.5\n[data]\nframe = 'flu'\n"
       "[identify]\nstructure = 'bicycle'\n",
@@ -172,7 +172,7 @@ TEST(CourseLateralVelocity, OfALateCourseAndATurnedHeadingLeavesTheStiffnessesRi
     const double shift = course_shift(recording);
     EXPECT_NEAR(shift, delay < 0.1 ? 0.0 : delay, 0.08);
     ASSERT_TRUE(signals.lateral_by_course);
-    const estimation::Estimate found = identified(recording);
+    const estimation::Estimate found = estimate_of_drive(recording);
     for (const auto& [name, truth] : {std::pair{"C_f", p.C_f}, std::pair{"C_r", p.C_r}, std::pair{"I_z", p.I_z},
                                       std::pair{"course_delay", delay - shift}}) {
       const estimation::Parameter* const e = found.find(name);

@@ -45,7 +45,7 @@ TEST(DriveLog, TurnsAFrdRecordingIntoFlu) {
 }
 
 /// A drive of 20 s that turns at a constant rate.
-std::string table_of(const char* header, double yaw_rate) {
+std::string drive_table(const char* header, double yaw_rate) {
   std::string text = std::string(header) + "\n";
   for (int k = 0; k <= 200; ++k) text += fmt::format("{},{},{},{},{}\n", 0.1 * k, 0.01, 20, yaw_rate, 20 * yaw_rate);
   return text;
@@ -53,9 +53,9 @@ std::string table_of(const char* header, double yaw_rate) {
 
 TEST(DriveLog, TakesRunsWithNamesFramesAndTimesOfTheirOwn) {
   const test::TemporaryFolder folder;
-  write_file(folder.path() / "a.csv", table_of("time,delta,u,r,ay", 0.1));
-  write_file(folder.path() / "b.csv", table_of("t,steer_rad,v,yawrate,lat", -0.2));
-  write_file(folder.path() / "c.csv", table_of("time,delta,u,r,ay", 0.3));
+  write_file(folder.path() / "a.csv", drive_table("time,delta,u,r,ay", 0.1));
+  write_file(folder.path() / "b.csv", drive_table("t,steer_rad,v,yawrate,lat", -0.2));
+  write_file(folder.path() / "c.csv", drive_table("time,delta,u,r,ay", 0.3));
   const Study study = Study::parse(
       "[data]\nframe = 'flu'\nruns = ['a.csv']\nholdout_runs = ['c.csv']\n"
       "[data.map]\nsteer = { channel = 'delta', unit = 'rad' }\nspeed = { channel = 'u', unit = 'm/s' }\n"
@@ -85,7 +85,7 @@ TEST(DriveLog, TakesRunsWithNamesFramesAndTimesOfTheirOwn) {
 
 TEST(DriveLog, RefusesRunsThatMakeNoSense) {
   const test::TemporaryFolder folder;
-  write_file(folder.path() / "a.csv", table_of("time,steer,speed,yaw_rate,accel_y", 0.1));
+  write_file(folder.path() / "a.csv", drive_table("time,steer,speed,yaw_rate,accel_y", 0.1));
   const auto refusal = [&](const std::string& data) {
     const Study study = Study::parse("[data]\n" + data, "study.toml", folder.path());
     return why([&] { static_cast<void>(read_drive_log(study.root().table("data"))); });
