@@ -4,8 +4,8 @@
 #include <ceres/jet.h>
 
 #include "tests/muscle/dynamics/model_trees.hpp"
-#include "veridyn/muscle/dynamics/coordinate_reduction.hpp"
 #include "veridyn/muscle/dynamics/dynamics.hpp"
+#include "veridyn/muscle/dynamics/reduced_dynamics.hpp"
 #ifdef VERIDYN_HAS_SIMBODY
 #include "tests/support/simbody/simbody_description.hpp"
 #endif

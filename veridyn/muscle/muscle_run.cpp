@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/muscle/simulation/assembly.hpp"
 #include "veridyn/muscle/simulation/motion_analysis.hpp"
 #include "veridyn/muscle/simulation/wrap_bands.hpp"
 
@@ -41,6 +42,9 @@ MuscleResult forward(const MuscleStudy& study, Progress& progress) {
   const ForwardOptions options{
       .begin = study.begin, .end = study.end, .rate_Hz = study.rate_Hz, .accuracy = study.accuracy};
   MuscleResult result;
+  if (std::string moved = assembly_text(*study.system, assemble(*study.system, study.start.q, study.start.qdot));
+      !moved.empty())
+    result.warnings.push_back(std::move(moved));
   result.trajectory = simulate_forward(*study.system, study.start, study.controls, options, progress);
   result.controls = study.controls;
   result.reactions = reactions_of(study, result.trajectory, {});

@@ -12,6 +12,7 @@
 #include "tests/muscle/dynamics/model_trees.hpp"
 #include "tests/support/folders.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/muscle/dynamics/reduced_dynamics.hpp"
 #include "veridyn/muscle/osim/osim_reader.hpp"
 #include "veridyn/numerics/ode.hpp"
 

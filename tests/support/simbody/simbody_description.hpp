@@ -5,6 +5,18 @@
 
 namespace veridyn::muscle::test {
 
+/// The mobilizer of the joint's own type, as OpenSim takes it.
+[[nodiscard]] inline TreeDescription::Mobilizer mobilizer_of(const Joint& joint) {
+  using Mobilizer = TreeDescription::Mobilizer;
+  if (joint.type == "UniversalJoint") return Mobilizer::kUniversal;
+  if (joint.type == "BallJoint") return Mobilizer::kBall;
+  if (joint.type == "GimbalJoint") return Mobilizer::kGimbal;
+  if (joint.type == "PlanarJoint") return Mobilizer::kPlanar;
+  if (joint.type == "FreeJoint") return Mobilizer::kFree;
+  if (joint.is_ellipsoid()) return Mobilizer::kEllipsoid;
+  return Mobilizer::kFunctions;
+}
+
 [[nodiscard]] inline TreeDescription describe(const Model& model) {
   TreeDescription tree;
   tree.gravity = model.gravity;
@@ -17,6 +29,9 @@ namespace veridyn::muscle::test {
                                  {j.child_frame.rotation, j.child_frame.translation},
                                  j.coordinates,
                                  {}};
+    joint.reversed = j.reversed;
+    joint.radii = j.ellipsoid_radii;
+    joint.mobilizer = mobilizer_of(j);
     for (std::size_t i = 0; i < 6; ++i) {
       const TransformAxis& axis = i < 3 ? j.rotation[i] : j.translation[i - 3];
       joint.axes[i] = {axis.axis, axis.coordinate, [f = axis.function](double x) {
@@ -25,6 +40,19 @@ namespace veridyn::muscle::test {
                        }};
     }
     tree.joints.push_back(std::move(joint));
+  }
+  for (const LoopConstraint& c : model.loops) {
+    using Kind = TreeDescription::Constraint::Kind;
+    Kind kind = Kind::kPoint;
+    if (c.kind == LoopKind::kWeld) kind = Kind::kWeld;
+    if (c.kind == LoopKind::kDistance) kind = Kind::kDistance;
+    if (c.kind == LoopKind::kPointOnLine) kind = Kind::kPointOnLine;
+    tree.constraints.push_back({kind,
+                                c.body_1,
+                                c.body_2,
+                                {c.frame_1.rotation, c.frame_1.translation},
+                                {c.frame_2.rotation, c.frame_2.translation},
+                                c.distance});
   }
   return tree;
 }

@@ -19,6 +19,50 @@ SimTK::Transform transform(const TreeDescription::Frame& p) {
   return {SimTK::Rotation(mat(p.rotation)), vec(p.translation)};
 }
 
+using Body = SimTK::MobilizedBody;
+
+/// The joint as the mobilizer of its own type.
+SimTK::MobilizedBodyIndex own_mobilizer(const TreeDescription::Joint& joint, SimTK::MobilizedBody& base,
+                                        const SimTK::Body::Rigid& info) {
+  const SimTK::Transform F = transform(joint.parent_frame), M = transform(joint.child_frame);
+  const auto direction = joint.reversed ? Body::Reverse : Body::Forward;
+  switch (joint.mobilizer) {
+    case TreeDescription::Mobilizer::kUniversal:
+      return Body::Universal(base, F, info, M, direction).getMobilizedBodyIndex();
+    case TreeDescription::Mobilizer::kBall:
+      return Body::Ball(base, F, info, M, direction).getMobilizedBodyIndex();
+    case TreeDescription::Mobilizer::kGimbal:
+      return Body::Gimbal(base, F, info, M, direction).getMobilizedBodyIndex();
+    case TreeDescription::Mobilizer::kPlanar:
+      return Body::Planar(base, F, info, M, direction).getMobilizedBodyIndex();
+    case TreeDescription::Mobilizer::kFree:
+      return Body::Free(base, F, info, M, direction).getMobilizedBodyIndex();
+    case TreeDescription::Mobilizer::kEllipsoid:
+      return Body::Ellipsoid(base, F, info, M, vec(joint.radii), direction).getMobilizedBodyIndex();
+    case TreeDescription::Mobilizer::kFunctions:
+      break;
+  }
+  return base.getMobilizedBodyIndex();
+}
+
+void add_constraint(const TreeDescription::Constraint& c, SimTK::MobilizedBody& one, SimTK::MobilizedBody& two) {
+  const SimTK::Transform A = transform(c.frame_1), B = transform(c.frame_2);
+  switch (c.kind) {
+    case TreeDescription::Constraint::Kind::kPoint:
+      SimTK::Constraint::Ball(one, A.p(), two, B.p());
+      break;
+    case TreeDescription::Constraint::Kind::kWeld:
+      SimTK::Constraint::Weld(one, A, two, B);
+      break;
+    case TreeDescription::Constraint::Kind::kDistance:
+      SimTK::Constraint::Rod(one, A.p(), two, B.p(), c.distance);
+      break;
+    case TreeDescription::Constraint::Kind::kPointOnLine:
+      SimTK::Constraint::PointOnLine(one, A.R().x(), A.p(), two, B.p());
+      break;
+  }
+}
+
 /// A function of no (a constant) or one coordinate.
 class AxisFunction : public SimTK::Function {
  public:
@@ -45,16 +89,22 @@ struct SimbodyTree::System {
   SimTK::State state;
   std::vector<SimTK::MobilizedBodyIndex> bodies;
   std::vector<Eigen::Vector3d> mass_centers;
-  std::vector<int> slot;  ///< by coordinate: its place in Simbody's vectors
+  std::vector<int> q_slot, u_slot;  ///< by coordinate: its place in Simbody's vectors
 
-  [[nodiscard]] Eigen::VectorXd ours(const SimTK::Vector& v) const {
-    Eigen::VectorXd x(slot.size());
-    for (std::size_t c = 0; c < slot.size(); ++c) x(c) = v[slot[c]];
+  [[nodiscard]] static Eigen::VectorXd ours(const SimTK::Vector& v, const std::vector<int>& slot) {
+    Eigen::VectorXd x(static_cast<Eigen::Index>(slot.size()));
+    for (std::size_t c = 0; c < slot.size(); ++c) x(static_cast<Eigen::Index>(c)) = v[slot[c]];
     return x;
   }
-  [[nodiscard]] SimTK::Vector theirs(const Eigen::VectorXd& v) const {
-    SimTK::Vector x(static_cast<int>(slot.size()));
-    for (std::size_t c = 0; c < slot.size(); ++c) x[slot[c]] = v(c);
+  /// By coordinate, as values, their rates, and forces on them.
+  [[nodiscard]] SimTK::Vector as_q(const Eigen::VectorXd& v) const {
+    SimTK::Vector x(state.getNQ(), 0.0);
+    for (std::size_t c = 0; c < q_slot.size(); ++c) x[q_slot[c]] = v(static_cast<Eigen::Index>(c));
+    return x;
+  }
+  [[nodiscard]] SimTK::Vector as_u(const Eigen::VectorXd& v) const {
+    SimTK::Vector x(state.getNU(), 0.0);
+    for (std::size_t c = 0; c < u_slot.size(); ++c) x[u_slot[c]] = v(static_cast<Eigen::Index>(c));
     return x;
   }
 };
@@ -104,10 +154,14 @@ SimbodyTree::SimbodyTree(const TreeDescription& model) : system_(std::make_uniqu
         for (const SimTK::Function* f : functions) delete f;
         const SimTK::MobilizedBody::Weld weld(base, transform(moved), info, transform(joint.child_frame));
         s.bodies[child] = weld.getMobilizedBodyIndex();
+      } else if (joint.mobilizer != TreeDescription::Mobilizer::kFunctions) {
+        for (const SimTK::Function* f : functions) delete f;
+        s.bodies[child] = own_mobilizer(joint, base, info);
       } else {
-        const SimTK::MobilizedBody::FunctionBased custom(
-            base, transform(joint.parent_frame), info, transform(joint.child_frame),
-            static_cast<int>(joint.coordinates.size()), functions, indices, axes);
+        const SimTK::MobilizedBody::FunctionBased custom(base, transform(joint.parent_frame), info,
+                                                         transform(joint.child_frame),
+                                                         static_cast<int>(joint.coordinates.size()), functions, indices,
+                                                         axes, joint.reversed ? Body::Reverse : Body::Forward);
         s.bodies[child] = custom.getMobilizedBodyIndex();
       }
       for (std::size_t c = 0; c < joint.coordinates.size(); ++c) {
@@ -116,25 +170,38 @@ SimbodyTree::SimbodyTree(const TreeDescription& model) : system_(std::make_uniqu
       }
     }
   }
+  for (const TreeDescription::Constraint& c : model.constraints) {
+    add_constraint(c, s.matter.updMobilizedBody(s.bodies[static_cast<std::size_t>(c.body_1)]),
+                   s.matter.updMobilizedBody(s.bodies[static_cast<std::size_t>(c.body_2)]));
+  }
   s.state = s.system.realizeTopology();
+  s.matter.setUseEulerAngles(s.state, true);
+  s.system.realizeModel(s.state);
   for (std::size_t c = 0; c < local.size(); ++c) {
-    s.slot.push_back(s.matter.getMobilizedBody(of_coordinate[c]).getFirstUIndex(s.state) + local[c]);
+    const SimTK::MobilizedBody& body = s.matter.getMobilizedBody(of_coordinate[c]);
+    s.q_slot.push_back(body.getFirstQIndex(s.state) + local[c]);
+    s.u_slot.push_back(body.getFirstUIndex(s.state) + local[c]);
   }
 }
 
 SimbodyTree::~SimbodyTree() = default;
 
 void SimbodyTree::set_state(const Eigen::VectorXd& q, const Eigen::VectorXd& qdot) {
-  system_->state.updQ() = system_->theirs(q);
-  system_->state.updU() = system_->theirs(qdot);
+  system_->state.updQ() = system_->as_q(q);
+  system_->system.realize(system_->state, SimTK::Stage::Position);
+  SimTK::Vector u;
+  system_->matter.multiplyByNInv(system_->state, false, system_->as_q(qdot), u);
+  system_->state.updU() = u;
   system_->applied.clearAllForces(system_->state);
   system_->system.realize(system_->state, SimTK::Stage::Dynamics);
 }
 
 Eigen::VectorXd SimbodyTree::accelerations(const Eigen::VectorXd& tau) {
-  system_->applied.setAllMobilityForces(system_->state, system_->theirs(tau));
+  SimTK::Vector on_speeds;
+  system_->matter.multiplyByN(system_->state, true, system_->as_q(tau), on_speeds);
+  system_->applied.setAllMobilityForces(system_->state, on_speeds);
   system_->system.realize(system_->state, SimTK::Stage::Acceleration);
-  return system_->ours(system_->state.getUDot());
+  return System::ours(system_->state.getQDotDot(), system_->q_slot);
 }
 
 void SimbodyTree::realize_accelerations() {
@@ -145,11 +212,11 @@ void SimbodyTree::realize_accelerations() {
 Eigen::MatrixXd SimbodyTree::mass_matrix() const {
   SimTK::Matrix M;
   system_->matter.calcM(system_->state, M);
-  const auto n = static_cast<Eigen::Index>(system_->slot.size());
+  const auto n = static_cast<Eigen::Index>(system_->u_slot.size());
   Eigen::MatrixXd ours(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = 0; j < n; ++j) {
-      ours(i, j) = M(system_->slot[i], system_->slot[j]);
+      ours(i, j) = M(system_->u_slot[i], system_->u_slot[j]);
     }
   }
   return ours;
@@ -159,8 +226,8 @@ Eigen::VectorXd SimbodyTree::inverse_dynamics(const Eigen::VectorXd& qddot) cons
   SimTK::Vector residual;
   system_->matter.calcResidualForceIgnoringConstraints(
       system_->state, SimTK::Vector(), system_->system.getRigidBodyForces(system_->state, SimTK::Stage::Dynamics),
-      system_->theirs(qddot), residual);
-  return system_->ours(residual);
+      system_->as_u(qddot), residual);
+  return System::ours(residual, system_->u_slot);
 }
 
 TreeDescription::Frame SimbodyTree::body_pose(int body) const {

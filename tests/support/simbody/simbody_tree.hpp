@@ -25,20 +25,34 @@ struct TreeDescription {
     /// Value, slope and curvature.
     std::function<std::array<double, 3>(double)> function;
   };
+  /// As OpenSim builds a joint: of functions of coordinates, or by the mobilizer of its own type.
+  enum class Mobilizer { kFunctions, kUniversal, kBall, kGimbal, kPlanar, kFree, kEllipsoid };
   struct Joint {
     int parent, child;
     Frame parent_frame, child_frame;
     std::vector<int> coordinates;
     std::array<Axis, 6> axes;  ///< rotations, translations
+    Mobilizer mobilizer = Mobilizer::kFunctions;
+    Eigen::Vector3d radii = Eigen::Vector3d::Ones();  ///< of an ellipsoid
+    bool reversed = false;                            ///< coordinates move the parent against the child
+  };
+  /// Holds body 2 to body 1. Points are the frames' origins; the line is the x axis of frame 1.
+  struct Constraint {
+    enum class Kind { kPoint, kWeld, kDistance, kPointOnLine } kind;
+    int body_1, body_2;
+    Frame frame_1, frame_2;
+    double distance;
   };
   Eigen::Vector3d gravity;
   std::vector<Body> bodies;
   std::vector<Joint> joints;
+  std::vector<Constraint> constraints;
   std::size_t coordinates = 0;
 };
 
-/// Bodies and joints as a Simbody system (Sherman, Seth & Delp 2011), each joint a FunctionBased mobilizer:
-/// what OpenSim makes of a CustomJoint.
+/// Bodies and joints as a Simbody system (Sherman, Seth & Delp 2011), joints as FunctionBased mobilizers (what OpenSim
+/// makes of a CustomJoint) or of their own types. Speeds, accelerations and forces are those of the coordinates, also
+/// where Simbody's own speeds are angular velocities.
 class SimbodyTree {
  public:
   explicit SimbodyTree(const TreeDescription& tree);
@@ -52,6 +66,7 @@ class SimbodyTree {
   [[nodiscard]] Eigen::VectorXd accelerations(const Eigen::VectorXd& tau);
   /// Realizes to accelerations with no forces but gravity, after a change of state: for time measurements.
   void realize_accelerations();
+  /// Mass matrix and inverse dynamics where Simbody's speeds are those of the coordinates, and no constraints.
   [[nodiscard]] Eigen::MatrixXd mass_matrix() const;
   [[nodiscard]] Eigen::VectorXd inverse_dynamics(const Eigen::VectorXd& qddot) const;
   [[nodiscard]] TreeDescription::Frame body_pose(int body) const;

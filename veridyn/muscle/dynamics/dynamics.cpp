@@ -1,7 +1,7 @@
 // Kinematics and dynamics in double, compiled once.
 #include "veridyn/muscle/dynamics/dynamics.hpp"
 
-#include "veridyn/muscle/dynamics/coordinate_reduction.hpp"
+#include "veridyn/muscle/dynamics/reduced_dynamics.hpp"
 
 namespace veridyn::muscle {
 

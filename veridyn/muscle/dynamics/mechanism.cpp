@@ -45,36 +45,73 @@ JointAxis compile(const TransformAxis& from, bool rotational) {
   return axis;
 }
 
+/// A translation over the joint's ellipsoid along its axis i.
+JointAxis compile_ellipsoid(const Joint& joint, int i) {
+  JointAxis axis;
+  axis.rotational = axis.linear = false;
+  axis.coordinate = joint.rotation[0].coordinate;
+  axis.second = joint.rotation[1].coordinate;
+  axis.ellipsoid = i;
+  axis.slope = joint.ellipsoid_radii(i);
+  return axis;
+}
+
+/// The joint's moving translations along axes in the frame `base`, and the sum of its constant ones.
+Eigen::Vector3d add_translations(const Joint& joint, const Eigen::Matrix3d& base, double sign, Link& link) {
+  Eigen::Vector3d constant = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const TransformAxis& translation = joint.translation[i];
+    JointAxis axis;
+    if (joint.is_ellipsoid()) {
+      axis = compile_ellipsoid(joint, static_cast<int>(i));
+    } else if (moves(translation)) {
+      axis = compile(translation, false);
+    } else {
+      if (const double amount = constant_of(translation); amount != 0.0)
+        constant += sign * amount * (base * unit_axis(translation, joint));
+      continue;
+    }
+    axis.axis = sign * (base * unit_axis(translation, joint));
+    link.axes.push_back(std::move(axis));
+  }
+  return constant;
+}
+
+/// Adds one rotation, by `sign` times its amount; `before` are the constant rotations since the last moving one.
+void add_rotation(const TransformAxis& rotation, const Joint& joint, double sign, Eigen::Matrix3d& before, Link& link) {
+  const auto about = [&] { return Eigen::Vector3d(sign * unit_axis(rotation, joint)); };
+  if (moves(rotation)) {
+    const Eigen::Matrix3d Z = z_along(about());
+    JointAxis axis = compile(rotation, true);
+    axis.before = before * Z;
+    link.axes.push_back(std::move(axis));
+    before = Z.transpose();
+  } else if (const double angle = constant_of(rotation); angle != 0.0) {
+    before = before * Eigen::AngleAxisd(angle, about()).toRotationMatrix();
+  }
+}
+
 /// Fills link.axes and link.origin; returns where the child body's frame stands in the link.
 ///
 /// The link's own frame is the one after the last moving rotation, with z along its axis, so that constant rotations
 /// after it (and all of them when none moves) become part of the bodies' places and cost nothing.
+///
+/// A reversed joint moves the parent's frame against the child's by x = T + R x': R' comes first, about the same axes
+/// in the other order and sense, then -T along axes that turn with the child's frame.
 Placement compile_joint(const Joint& joint, const Placement& parent_in_link, Link& link) {
   const Placement base = parent_in_link * joint.parent_frame;
   link.origin = base.translation;
-  for (const TransformAxis& translation : joint.translation) {
-    if (moves(translation)) {
-      JointAxis axis = compile(translation, false);
-      axis.axis = base.rotation * unit_axis(translation, joint);
-      link.axes.push_back(std::move(axis));
-    } else if (const double amount = constant_of(translation); amount != 0.0) {
-      link.origin += amount * (base.rotation * unit_axis(translation, joint));
-    }
-  }
   Eigen::Matrix3d before = base.rotation;  // constant rotations since the last moving one
-  for (const TransformAxis& rotation : joint.rotation) {
-    if (moves(rotation)) {
-      const Eigen::Matrix3d Z = z_along(unit_axis(rotation, joint));
-      JointAxis axis = compile(rotation, true);
-      axis.before = before * Z;
-      link.axes.push_back(std::move(axis));
-      before = Z.transpose();
-    } else if (const double angle = constant_of(rotation); angle != 0.0) {
-      before = before * Eigen::AngleAxisd(angle, unit_axis(rotation, joint)).toRotationMatrix();
-    }
+  Eigen::Vector3d after = Eigen::Vector3d::Zero();
+  if (joint.reversed) {
+    for (std::size_t i = 3; i-- > 0;) add_rotation(joint.rotation[i], joint, -1.0, before, link);
+    after = add_translations(joint, before, -1.0, link);
+  } else {
+    link.origin += add_translations(joint, base.rotation, 1.0, link);
+    for (const TransformAxis& rotation : joint.rotation) add_rotation(rotation, joint, 1.0, before, link);
   }
   link.simple = link.axes.size() == 1 && link.axes[0].linear && link.coordinates.size() == 1;
-  return Placement{before, Eigen::Vector3d::Zero()} * joint.child_frame.inverse();
+  return Placement{before, after} * joint.child_frame.inverse();
 }
 
 /// Where the child body stands in the link of its parent when the joint has no coordinates.

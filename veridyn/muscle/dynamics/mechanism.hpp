@@ -32,7 +32,11 @@ struct JointAxis {
   double slope = 1.0;
   double intercept = 0.0;
   numerics::PiecewisePolynomial function;
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();       ///< of a translation, in the parent link
+  /// Of a translation over an ellipsoid: which component of n = (sin b, -sin a cos b, cos a cos b), the third axis of a
+  /// body-fixed x-y-z sequence of angles a = `coordinate`, b = `second`; amount = slope n(ellipsoid). -1: none.
+  int ellipsoid = -1;
+  int second = -1;
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();       ///< of a translation, in the frame after the axis before it
   Eigen::Matrix3d before = Eigen::Matrix3d::Identity();  ///< of a rotation, in the frame after the rotation before it
 };
 
@@ -40,8 +44,8 @@ struct JointAxis {
 struct Link {
   int parent = -1;                                   ///< always a smaller number than the link's own; -1 for the ground
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of the joint at zero translation, in the parent link [m]
-  std::vector<JointAxis> axes;                       ///< translations, then rotations
-  std::vector<int> coordinates;                      ///< of its joint
+  std::vector<JointAxis> axes;   ///< translations, then rotations; of a reversed joint the other way
+  std::vector<int> coordinates;  ///< of its joint
   /// Coordinates between the ground and this link, the ground's side first, its own joint's included.
   std::vector<int> ancestors;
   bool simple = false;                                    ///< one axis with a linear function: the usual pin or slider
@@ -123,6 +127,7 @@ struct Kinematics {
     SpatialVector<Scalar> unit;
     Scalar slope{};
     Scalar curvature{};
+    Scalar slope_2{}, curvature_2{}, mixed{};  ///< by the second coordinate of an ellipsoid, twice, and by both
   };
   std::vector<AxisMotion> axis_motion;  ///< of all such joints, link after link
 };
@@ -170,6 +175,30 @@ Matrix3<Scalar> rotate(const Matrix3<Scalar>& R, const Eigen::Matrix3d& A) {
   Matrix3<Scalar> product;
   for (int i = 0; i < 3; ++i) product.col(i) = R.col(0) * A(0, i) + R.col(1) * A(1, i) + R.col(2) * A(2, i);
   return product;
+}
+
+/// Amount of a translation over an ellipsoid: returns its value, fills derivatives.
+template <typename Scalar, typename Motion>
+Scalar over_ellipsoid(const JointAxis& axis, const Scalar* q, Motion& motion) {
+  using std::cos;
+  using std::sin;
+  const Scalar &a = q[axis.coordinate], &b = q[axis.second];
+  const Scalar sa = sin(a), ca = cos(a), sb = Scalar(axis.slope) * sin(b), cb = Scalar(axis.slope) * cos(b);
+  if (axis.ellipsoid == 0) {
+    motion.slope = motion.curvature = motion.mixed = Scalar(0.0);
+    motion.slope_2 = cb;
+    motion.curvature_2 = -sb;
+    return sb;
+  }
+  // -sin a cos b; with a + 90 deg in place of a, whose sine is cos a, the third component is -1 times it.
+  const bool third = axis.ellipsoid == 2;
+  const Scalar s = third ? -ca : sa, c = third ? sa : ca;
+  motion.slope = -c * cb;
+  motion.slope_2 = s * sb;
+  motion.curvature = s * cb;
+  motion.mixed = c * sb;
+  motion.curvature_2 = s * cb;
+  return -s * cb;
 }
 
 /// frame Rz(angle)
@@ -225,15 +254,19 @@ void update_positions(const Mechanism& mechanism, const Scalar* q, Kinematics<Sc
     for (const JointAxis& axis : link.axes) {
       numerics::FunctionValue<Scalar> f;
       const Scalar& x = q[axis.coordinate];
-      if (axis.linear) {
-        f = {axis.slope * x + axis.intercept, Scalar(axis.slope), Scalar(0.0)};
+      if (axis.ellipsoid >= 0) {
+        f.value = internal::over_ellipsoid(axis, q, *motion);
       } else {
-        f = axis.function.evaluate(x);
+        if (axis.linear) {
+          f = {axis.slope * x + axis.intercept, Scalar(axis.slope), Scalar(0.0)};
+        } else {
+          f = axis.function.evaluate(x);
+        }
+        motion->slope = f.slope;
+        motion->curvature = f.curvature;
       }
-      motion->slope = f.slope;
-      motion->curvature = f.curvature;
       if (axis.rotational) {
-        // Translations come first, so that the position is final here.
+        // The axis passes through the position so far, whatever comes after it.
         internal::turn_about_z(internal::rotate(pose.rotation, axis.before), f.value, pose.rotation);
         motion->unit.angular = pose.rotation.col(2);
         motion->unit.linear = pose.position.cross(motion->unit.angular);
@@ -247,6 +280,7 @@ void update_positions(const Mechanism& mechanism, const Scalar* q, Kinematics<Sc
     const auto* m = first;
     for (const JointAxis& axis : link.axes) {
       k.columns[axis.coordinate].add_scaled(m->slope, m->unit);
+      if (axis.ellipsoid >= 0) k.columns[axis.second].add_scaled(m->slope_2, m->unit);
       ++m;
     }
   }
@@ -278,9 +312,14 @@ void update_velocities(const Mechanism& mechanism, const Scalar* qdot, Kinematic
     bias = {};
     for (const JointAxis& axis : link.axes) {
       const Scalar& speed = qdot[axis.coordinate];
-      const Scalar rate = motion->slope * speed;
+      Scalar rate = motion->slope * speed, bend = motion->curvature * speed * speed;
+      if (axis.ellipsoid >= 0) {
+        const Scalar& other = qdot[axis.second];
+        rate += motion->slope_2 * other;
+        bend += (motion->curvature_2 * other + motion->mixed * speed * Scalar(2.0)) * other;
+      }
       bias.add_scaled(rate, cross_motion(V, motion->unit));
-      bias.add_scaled(motion->curvature * speed * speed, motion->unit);
+      bias.add_scaled(bend, motion->unit);
       V.add_scaled(rate, motion->unit);
       ++motion;
     }

@@ -10,6 +10,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/muscle/model/body_force.hpp"
+#include "veridyn/muscle/model/loop_constraint.hpp"
 #include "veridyn/muscle/model/muscle_parameters.hpp"
 #include "veridyn/muscle/model/placement.hpp"
 #include "veridyn/numerics/piecewise_polynomial.hpp"
@@ -73,6 +74,14 @@ struct Joint {
   std::vector<int> coordinates;
   std::array<TransformAxis, 3> rotation;
   std::array<TransformAxis, 3> translation;
+  /// The coordinates give the parent's frame in the child's instead: the body nearer to the ground is `parent` in any
+  /// case.
+  bool reversed = false;
+  /// Above 0: the child's frame is on an ellipsoid about the parent's frame, at radii times its z axis, component by
+  /// component, in place of `translation`; rotations 0 and 1 are about x and y by their coordinates themselves [m].
+  Eigen::Vector3d ellipsoid_radii = Eigen::Vector3d::Zero();
+
+  [[nodiscard]] bool is_ellipsoid() const { return ellipsoid_radii.x() > 0.0; }
 };
 
 /// value(dependent) = function(value(independent)) (CoordinateCouplerConstraint).
@@ -233,6 +242,7 @@ struct Model {
   std::vector<Joint> joints;
   std::vector<Coordinate> coordinates;
   std::vector<CoordinateCoupler> couplers;
+  std::vector<LoopConstraint> loops;
   std::vector<WrapObject> wrap_objects;
   std::vector<Muscle> muscles;
   std::vector<CoordinateActuator> actuators;

@@ -1,9 +1,13 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstring>
+#include <deque>
 #include <map>
 #include <numbers>
 
+#include "veridyn/core/constants.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/osim/osim_context.hpp"
 #include "veridyn/muscle/osim/osim_function.hpp"
 
@@ -12,11 +16,15 @@ namespace veridyn::muscle::osim {
 namespace {
 
 /// Which of rotation x, y, z and translation x, y, z a joint's coordinates drive, in the order of its coordinates.
-const std::map<std::string, std::vector<int>, std::less<>> kPlainJoints{
-    {"WeldJoint", {}},          {"PinJoint", {2}},
-    {"SliderJoint", {3}},       {"UniversalJoint", {0, 1}},
-    {"BallJoint", {0, 1, 2}},   {"GimbalJoint", {0, 1, 2}},
-    {"PlanarJoint", {2, 3, 4}}, {"FreeJoint", {0, 1, 2, 3, 4, 5}}};
+const std::map<std::string, std::vector<int>, std::less<>> kPlainJoints{{"WeldJoint", {}},
+                                                                        {"PinJoint", {2}},
+                                                                        {"SliderJoint", {3}},
+                                                                        {"UniversalJoint", {0, 1}},
+                                                                        {"BallJoint", {0, 1, 2}},
+                                                                        {"GimbalJoint", {0, 1, 2}},
+                                                                        {"PlanarJoint", {2, 3, 4}},
+                                                                        {"FreeJoint", {0, 1, 2, 3, 4, 5}},
+                                                                        {"EllipsoidJoint", {0, 1, 2}}};
 
 TransformAxis& axis_of(Joint& joint, std::size_t index) {
   return index < 3 ? joint.rotation[index] : joint.translation[index - 3];
@@ -175,75 +183,178 @@ std::vector<JointSource> joint_sources(const Context& context) {
   return sources;
 }
 
+/// A joint of no type yet: its axes are those of its frames.
+Joint named_joint(const Element& element) {
+  Joint joint;
+  joint.name = element.name();
+  joint.type = element.type();
+  for (std::size_t i = 0; i < 3; ++i) {
+    joint.rotation[i].axis = Eigen::Vector3d::Unit(signed_index(i));
+    joint.translation[i].axis = Eigen::Vector3d::Unit(signed_index(i));
+  }
+  return joint;
+}
+
+/// The bodies that the joint connects, and its frames in them.
+void read_ends(Context& context, const JointSource& source, Joint& joint) {
+  const Element& element = source.element;
+  if (source.child < 0) {
+    const FrameReference parent_frame = joint_frame(context, element, "parent_frame", 0);
+    const FrameReference child_frame = joint_frame(context, element, "child_frame", 1);
+    joint.parent = parent_frame.body;
+    joint.parent_frame = parent_frame.placement;
+    joint.child = child_frame.body;
+    joint.child_frame = child_frame.placement;
+  } else {
+    joint.parent = context.body(element, "parent_body", element.text_or("parent_body", "ground"));
+    joint.child = source.child;
+    const auto placement = [&](const char* location, const char* orientation) -> Placement {
+      return {body_fixed_xyz(element.vector_or(orientation, Eigen::Vector3d::Zero())),
+              element.vector_or(location, Eigen::Vector3d::Zero())};
+    };
+    joint.parent_frame = placement("location_in_parent", "orientation_in_parent");
+    joint.child_frame = placement("location", "orientation");
+  }
+  if (joint.child == joint.parent) element.fail("child", "a joint cannot connect a body to itself");
+}
+
+void read_radii(const Element& element, const char* property, Joint& joint) {
+  joint.ellipsoid_radii = element.vector_or(property, Eigen::Vector3d::Constant(-1.0));
+  if (!(joint.ellipsoid_radii.minCoeff() > 0.0)) element.fail(property, "all three radii must be > 0");
+}
+
+/// As OpenSim builds it: over an ellipsoid of the thorax, whose frame is turned by 90 deg so that abduction and
+/// elevation are positive, on a massless body; and from there about the winging axis.
+void read_scapulothoracic(Context& context, const Element& element, Joint joint) {
+  read_coordinates(context, element, joint, 4);
+  Joint winging = joint;
+  winging.name += "_winging";
+  joint.coordinates.resize(3);
+  read_plain_axes(context, element, {0, 1, 2}, joint);
+  read_radii(element, "thoracic_ellipsoid_radii_x_y_z", joint);
+  std::swap(joint.ellipsoid_radii.x(), joint.ellipsoid_radii.y());
+  const Placement turned{body_fixed_xyz({0.0, 0.0, 0.5 * kPi}), Eigen::Vector3d::Zero()};
+  joint.parent_frame = joint.parent_frame * turned;
+  joint.child_frame = turned;
+  joint.child = static_cast<int>(context.model.bodies.size());
+  context.model.bodies.push_back({.name = joint.name + "_surface"});
+
+  const std::vector<double> origin = element.numbers("scapula_winging_axis_origin");
+  if (!origin.empty() && origin.size() != 2)
+    element.fail("scapula_winging_axis_origin", fmt::format("{} numbers where two are expected", origin.size()));
+  const double direction = element.number_or("scapula_winging_axis_direction", 0.0);
+  // Rotations about z become those about (-sin, cos, 0).
+  Placement axis;
+  axis.rotation.col(2) = Eigen::Vector3d(-std::sin(direction), std::cos(direction), 0.0);
+  axis.rotation.col(0) = Eigen::Vector3d::UnitZ();
+  axis.rotation.col(1) = axis.rotation.col(2).cross(axis.rotation.col(0));
+  if (!origin.empty()) axis.translation = Eigen::Vector3d(origin[0], origin[1], 0.0);
+  winging.coordinates = {winging.coordinates[3]};
+  read_plain_axes(context, element, {2}, winging);
+  winging.parent = joint.child;
+  winging.parent_frame = axis;
+  winging.child_frame = winging.child_frame * axis;
+  context.model.joints.push_back(std::move(joint));
+  context.model.joints.push_back(std::move(winging));
+}
+
+void read_joint(Context& context, const JointSource& source) {
+  const Element& element = source.element;
+  Joint joint = named_joint(element);
+  const auto plain = kPlainJoints.find(joint.type);
+  if (plain == kPlainJoints.end() && joint.type != "CustomJoint" && joint.type != "ScapulothoracicJoint")
+    element.fail(joint.type, "joints of this type are not understood");
+  read_ends(context, source, joint);
+  joint.reversed = element.flag_or("reverse", false);
+  if (joint.type == "ScapulothoracicJoint") {
+    if (joint.reversed) element.fail("reverse", "a joint of this type is not understood the other way round");
+    return read_scapulothoracic(context, element, std::move(joint));
+  }
+  read_coordinates(context, element, joint, plain == kPlainJoints.end() ? 0 : plain->second.size());
+  if (plain != kPlainJoints.end()) {
+    read_plain_axes(context, element, plain->second, joint);
+  } else {
+    read_spatial_transform(context, element, joint);
+  }
+  if (joint.type == "EllipsoidJoint") read_radii(element, "radii_x_y_z", joint);
+  context.model.joints.push_back(std::move(joint));
+}
+
+/// A joint between two bodies that others hold already: half of its child stays, the other half hangs on the joint, and
+/// a weld holds them together. OpenSim splits bodies in the same way.
+void close_loop(Context& context, std::size_t index) {
+  Model& model = context.model;
+  Joint& joint = model.joints[index];
+  Body& whole = model.bodies[joint.child];
+  whole.mass *= 0.5;
+  whole.inertia *= 0.5;
+  Body half = whole;
+  half.name = fmt::format("{}_{}", whole.name, joint.name);
+  model.warnings.push_back(
+      fmt::format("{}: joint '{}' closes a loop: body '{}' is split into halves that a constraint welds together",
+                  context.document.name(), joint.name, whole.name));
+  model.loops.push_back({.name = joint.name + "_loop",
+                         .kind = LoopKind::kWeld,
+                         .body_1 = joint.child,
+                         .body_2 = static_cast<int>(model.bodies.size())});
+  joint.child = model.loops.back().body_2;
+  model.bodies.push_back(std::move(half));
+}
+
+/// Makes a tree of the joints, level by level from the ground: those whose child is nearer to it are turned round.
+void grow_tree(Context& context) {
+  Model& model = context.model;
+  std::vector<std::vector<std::size_t>> of_body(model.bodies.size());
+  for (std::size_t j = 0; j < model.joints.size(); ++j) {
+    of_body[model.joints[j].parent].push_back(j);
+    of_body[model.joints[j].child].push_back(j);
+  }
+  std::vector<char> in_tree(model.bodies.size(), 0), used(model.joints.size(), 0);
+  std::deque<int> next{0};
+  in_tree[0] = 1;
+  std::vector<std::size_t> loops;
+  while (!next.empty()) {
+    const int body = next.front();
+    next.pop_front();
+    for (const std::size_t j : of_body[body]) {
+      if (used[j] != 0) continue;
+      used[j] = 1;
+      Joint& joint = model.joints[j];
+      const int other = joint.parent == body ? joint.child : joint.parent;
+      if (in_tree[other] != 0) {
+        loops.push_back(j);
+        continue;
+      }
+      in_tree[other] = 1;
+      next.push_back(other);
+      if (joint.parent == body) continue;
+      std::swap(joint.parent, joint.child);
+      std::swap(joint.parent_frame, joint.child_frame);
+      joint.reversed = !joint.reversed;
+    }
+  }
+  for (const std::size_t j : loops) {
+    if (model.joints[j].child == 0) {  // the ground is not split
+      std::swap(model.joints[j].parent, model.joints[j].child);
+      std::swap(model.joints[j].parent_frame, model.joints[j].child_frame);
+      model.joints[j].reversed = !model.joints[j].reversed;
+    }
+    close_loop(context, j);
+  }
+  for (std::size_t b = 1; b < in_tree.size(); ++b) {
+    if (in_tree[b] != 0) continue;
+    const Element root(context.document, context.document.model());
+    const std::string& name = model.bodies[b].name;
+    if (of_body[b].empty()) root.fail("JointSet", fmt::format("no joint holds body '{}'", name));
+    root.fail("JointSet", fmt::format("the joints from body '{}' lead to other bodies, not to the ground", name));
+  }
+}
+
 }  // namespace
 
 void read_joints(Context& context) {
-  for (const JointSource& source : joint_sources(context)) {
-    const Element& element = source.element;
-    const int child = source.child;
-    Joint joint;
-    joint.name = element.name();
-    joint.type = element.type();
-    for (int i = 0; i < 3; ++i) {
-      joint.rotation[i].axis = Eigen::Vector3d::Unit(i);
-      joint.translation[i].axis = Eigen::Vector3d::Unit(i);
-    }
-    const auto plain = kPlainJoints.find(joint.type);
-    if (plain == kPlainJoints.end() && joint.type != "CustomJoint") {
-      element.fail(joint.type, "joints of this type are not understood");
-    }
-    if (element.flag_or("reverse", false)) element.fail("reverse", "reversed joints are not understood");
-    if (child < 0) {
-      const FrameReference parent_frame = joint_frame(context, element, "parent_frame", 0);
-      const FrameReference child_frame = joint_frame(context, element, "child_frame", 1);
-      joint.parent = parent_frame.body;
-      joint.parent_frame = parent_frame.placement;
-      joint.child = child_frame.body;
-      joint.child_frame = child_frame.placement;
-    } else {
-      joint.parent = context.body(element, "parent_body", element.text_or("parent_body", "ground"));
-      joint.child = child;
-      const auto placement = [&](const char* location, const char* orientation) -> Placement {
-        return {body_fixed_xyz(element.vector_or(orientation, Eigen::Vector3d::Zero())),
-                element.vector_or(location, Eigen::Vector3d::Zero())};
-      };
-      joint.parent_frame = placement("location_in_parent", "orientation_in_parent");
-      joint.child_frame = placement("location", "orientation");
-    }
-    if (joint.child == 0) element.fail("child", "the ground cannot be the child of a joint");
-    if (joint.child == joint.parent) element.fail("child", "a joint cannot connect a body to itself");
-    for (const Joint& other : context.model.joints) {
-      if (other.child == joint.child) {
-        element.fail("child", fmt::format("body '{}' already hangs on joint '{}'",
-                                          context.model.bodies[joint.child].name, other.name));
-      }
-    }
-    read_coordinates(context, element, joint, plain == kPlainJoints.end() ? 0 : plain->second.size());
-    if (plain != kPlainJoints.end()) {
-      read_plain_axes(context, element, plain->second, joint);
-    } else {
-      read_spatial_transform(context, element, joint);
-    }
-    context.model.joints.push_back(std::move(joint));
-  }
-  // Every body has to reach the ground.
-  for (std::size_t b = 1; b < context.model.bodies.size(); ++b) {
-    int at = static_cast<int>(b);
-    for (std::size_t hops = 0; at != 0; ++hops) {
-      const auto joint = std::find_if(context.model.joints.begin(), context.model.joints.end(),
-                                      [at](const Joint& j) { return j.child == at; });
-      const Element root(context.document, context.document.model());
-      const std::string& name = context.model.bodies[b].name;
-      if (joint == context.model.joints.end()) {
-        root.fail("JointSet", fmt::format("no joint holds body '{}'{}", context.model.bodies[at].name,
-                                          at == static_cast<int>(b) ? "" : fmt::format(", on which '{}' hangs", name)));
-      }
-      if (hops > context.model.bodies.size()) {
-        root.fail("JointSet", fmt::format("the joints from body '{}' towards the ground go round in a circle", name));
-      }
-      at = joint->parent;
-    }
-  }
+  for (const JointSource& source : joint_sources(context)) read_joint(context, source);
+  grow_tree(context);
 }
 
 }  // namespace veridyn::muscle::osim

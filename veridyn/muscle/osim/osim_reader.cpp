@@ -13,7 +13,6 @@
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/muscle/osim/osim_context.hpp"
-#include "veridyn/muscle/osim/osim_function.hpp"
 
 namespace veridyn::muscle {
 namespace osim {
@@ -234,34 +233,6 @@ void read_wrap_objects(Context& context) {
   for (const Element& element : root.objects("BodySet")) {
     const int body = context.model.body(element.name());
     if (body >= 0) read_wraps_of(context, element, body);
-  }
-}
-
-void read_constraints(Context& context) {
-  const Element root(context.document, context.document.model());
-  for (const Element& element : root.objects("ConstraintSet")) {
-    const bool on = element.flag_or("isEnforced", !element.flag_or("isDisabled", false));
-    if (element.type() != "CoordinateCouplerConstraint") {
-      context.unsupported(element, on);
-      continue;
-    }
-    if (!on) continue;
-    const std::vector<std::string> independent = element.words("independent_coordinate_names");
-    if (independent.size() != 1) {
-      element.fail("independent_coordinate_names",
-                   fmt::format("{} names; couplers of one coordinate are understood", independent.size()));
-    }
-    CoordinateCoupler coupler;
-    coupler.name = element.name();
-    coupler.independent = context.coordinate(element, "independent_coordinate_names", independent.front());
-    coupler.dependent =
-        context.coordinate(element, "dependent_coordinate_name", element.text_or("dependent_coordinate_name", ""));
-    if (coupler.dependent == coupler.independent)
-      element.fail("dependent_coordinate_name", "a coordinate cannot be coupled to itself");
-    const Element function = find_function(element, "coupled_coordinates_function");
-    if (!function) element.fail("coupled_coordinates_function", "missing");
-    coupler.function = read_function(function).scaled(element.number_or("scale_factor", 1.0));
-    context.model.couplers.push_back(std::move(coupler));
   }
 }
 

@@ -295,6 +295,7 @@ void check(const MusculoskeletalSystem& system, const ControlOptions& o) {
           "reserve forces must be as many as coordinates");
   for (const double force : o.reserve_forces) require(force >= 0.0, "a reserve's optimal force must not be negative");
   require(system.muscles().size() > 0, "the model has no muscles");
+  system.refuse_loops("computed muscle control");
 }
 
 }  // namespace

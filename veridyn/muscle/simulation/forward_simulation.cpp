@@ -8,6 +8,7 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/muscle/simulation/assembly.hpp"
 #include "veridyn/muscle/simulation/driven_integration.hpp"
 
 namespace veridyn::muscle {
@@ -240,13 +241,14 @@ StartState default_start(const Model& model) {
 MuscleTrajectory simulate_forward(const MusculoskeletalSystem& system, const StartState& start,
                                   const MuscleControls& controls, const ForwardOptions& options, Progress& progress) {
   check_start(system.model(), start);
+  const Assembly closed = assemble(system, start.q, start.qdot);
   const StateLayout& layout = system.layout();
   ControlsAtInstant signals(controls, system.muscles().size(), system.coordinates());
   SystemEvaluator<double> evaluator(system);
   Eigen::VectorXd x(layout.size);
   for (std::size_t i = 0; i < layout.free; ++i) {
-    x(i) = start.q(system.reduction().free()[i]);
-    x(layout.free + i) = start.qdot(system.reduction().free()[i]);
+    x(i) = closed.q(system.reduction().free()[i]);
+    x(layout.free + i) = closed.qdot(system.reduction().free()[i]);
   }
   evaluator.hold(start.q.data());
   evaluator.set_motion(x.data(), x.data() + layout.free);

@@ -79,10 +79,11 @@ struct MuscleControls {
   std::shared_ptr<const ExternalLoads> external = {};
 };
 
-/// Integrates the system from `start`, with error control (`SystemStepper`). Instants at which held signals
-/// jump are ends of steps. Slack tendons and shortest fibres are located as events. Never throws on a
-/// diverging simulation and always ends: the result says how.
-/// @throws InputError for a start that is not finite or outside a coordinate's range, naming the coordinate.
+/// Integrates the system from `start`, with its loops closed (`assemble`), with error control (`SystemStepper`).
+/// Instants at which held signals jump are ends of steps. Slack tendons and shortest fibres are located as events.
+/// Never throws on a diverging simulation and always ends: the result says how.
+/// @throws InputError for a start that is not finite or outside a coordinate's range, naming the coordinate, or whose
+/// loops cannot be closed.
 [[nodiscard]] MuscleTrajectory simulate_forward(const MusculoskeletalSystem& system, const StartState& start,
                                                 const MuscleControls& controls, const ForwardOptions& options,
                                                 Progress& progress);

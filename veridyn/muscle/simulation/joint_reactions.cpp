@@ -9,37 +9,68 @@
 namespace veridyn::muscle {
 namespace {
 
-/// View of a system and its motion: one instant after another.
+/// The system's model with a locked hinge in the place of each weld, so that its bodies are links of their own; its
+/// coordinates come after the others.
+Model with_hinges(Model model) {
+  for (std::size_t j = 0; j < model.joints.size(); ++j) {
+    Joint& joint = model.joints[j];
+    if (!joint.coordinates.empty()) continue;
+    const int added = static_cast<int>(model.coordinates.size());
+    TransformAxis& axis = joint.rotation[0];
+    axis.function = numerics::PiecewisePolynomial::linear(1.0, axis.function.evaluate(0.0).value);
+    axis.coordinate = added;
+    joint.coordinates = {added};
+    model.coordinates.push_back({.name = joint.name + "_weld", .joint = static_cast<int>(j), .locked = true});
+  }
+  return model;
+}
+
+SystemOptions as_prepared(const MusculoskeletalSystem& system) {
+  SystemOptions options;
+  options.paths = system.path_source() == PathSource::kAsOpenSim ? PathSource::kAsOpenSim : PathSource::kExact;
+  options.without_unsupported = true;
+  return options;
+}
+
+/// View of a system and its motion: one instant after another. Accelerations are the system's, reactions those of the
+/// same bodies with their welds cut.
 class ReactionSolver {
  public:
   ReactionSolver(const MusculoskeletalSystem& system, const MovedModel& moved)
       : system_(system),
         moved_(moved),
         evaluator_(system),
-        paths_(system.paths()),
-        applied_(static_cast<std::size_t>(system.mechanism().links())),
-        tau_(system.coordinates()),
+        cut_(with_hinges(system.model()), as_prepared(system)),
+        dynamics_(cut_.mechanism()),
+        paths_(cut_.paths()),
+        applied_(cut_.mechanism().links()),
+        tau_(cut_.coordinates()),
         z_(system.layout().free),
         zdot_(z_.size()),
         zddot_(z_.size()) {}
 
   /// Forces of the row on all links; `dynamics().joint_force` holds what joints transmit afterwards.
   void solve(Eigen::Index row) {
-    const Eigen::VectorXd q = moved_.q.row(row), qdot = moved_.qdot.row(row);
-    Eigen::VectorXd qddot;
+    Eigen::VectorXd q = moved_.q.row(row), qdot = moved_.qdot.row(row), qddot;
     if (moved_.qddot.size() > 0) {
       qddot = moved_.qddot.row(row);
-      evaluator_.set_all(q.data(), qdot.data());
     } else {
       qddot = accelerations(q, qdot, row);
+      q = evaluator_.dynamics().state().q;
+      qdot = evaluator_.dynamics().state().qdot;
     }
-    q_ = q;
-    pull(row);
-    Dynamics<double>& dynamics = evaluator_.dynamics().dynamics();
-    dynamics.inverse_dynamics(qddot.data(), applied_.data(), tau_.data());
+    for (Eigen::VectorXd* x : {&q, &qdot, &qddot}) {
+      const Eigen::Index known = x->size();
+      x->conservativeResize(tau_.size());
+      x->tail(x->size() - known).setZero();
+    }
+    dynamics_.set_state(q.data(), qdot.data());
+    pull(row, q, qdot);
+    dynamics_.inverse_dynamics(qddot.data(), applied_.data(), tau_.data());
   }
 
-  [[nodiscard]] const Dynamics<double>& dynamics() { return evaluator_.dynamics().dynamics(); }
+  [[nodiscard]] const Dynamics<double>& dynamics() const { return dynamics_; }
+  [[nodiscard]] const Mechanism& mechanism() const { return cut_.mechanism(); }
 
  private:
   Eigen::VectorXd accelerations(const Eigen::VectorXd& q, const Eigen::VectorXd& qdot, Eigen::Index row) {
@@ -51,7 +82,7 @@ class ReactionSolver {
     evaluator_.hold(q.data());
     evaluator_.set_motion(z_.data(), zdot_.data());
     std::fill(tau_.begin(), tau_.end(), 0.0);
-    for (std::size_t c = 0; c < tau_.size() && moved_.reserve.size() > 0; ++c) tau_[c] = moved_.reserve(row, c);
+    for (Eigen::Index c = 0; c < moved_.reserve.cols(); ++c) tau_[c] = moved_.reserve(row, c);
     const auto pairs = system_.pairs();
     for (std::size_t k = 0; k < pairs.size() && moved_.tendon_force.size() > 0; ++k)
       tau_[pairs[k].coordinate] -= moved_.tendon_force(row, pairs[k].muscle) * evaluator_.path_gradient()[k];
@@ -62,25 +93,32 @@ class ReactionSolver {
   }
 
   /// All forces on links but those of joints.
-  void pull(Eigen::Index row) {
-    const Mechanism& mechanism = system_.mechanism();
-    const Kinematics<double>& kinematics = evaluator_.dynamics().kinematics();
+  void pull(Eigen::Index row, const Eigen::VectorXd& q, const Eigen::VectorXd& qdot) {
+    const Kinematics<double>& kinematics = dynamics_.kinematics();
     std::fill(applied_.begin(), applied_.end(), SpatialVector<double>{});
+    if (const LoopSolver<double>* loops = evaluator_.dynamics().loops(); loops != nullptr && moved_.qddot.size() == 0) {
+      for (int r = 0; r < loops->rows(); ++r) {
+        const LoopConstraints::Constraint& c = cut_.loops().of_row(r);
+        applied_[c.link_2].add_scaled(loops->multiplier(r), loops->row(r).force);
+        applied_[c.link_1].add_scaled(-loops->multiplier(r), loops->row(r).force);
+      }
+    }
     if (moved_.external != nullptr)
-      add_external_forces(*moved_.external, moved_.time[row], mechanism, kinematics, applied_.data());
-    if (moved_.passive) system_.passive().add_to_links(mechanism, kinematics, q_.data(), evaluator_.qdot(), applied_);
+      add_external_forces(*moved_.external, moved_.time[row], mechanism(), kinematics, applied_.data());
+    if (moved_.passive) cut_.passive().add_to_links(mechanism(), kinematics, q.data(), qdot.data(), applied_);
     for (Eigen::Index m = 0; m < moved_.tendon_force.cols(); ++m)
-      system_.paths().add_tension(kinematics, q_.data(), static_cast<int>(m), moved_.tendon_force(row, m), paths_,
-                                  applied_);
+      cut_.paths().add_tension(kinematics, q.data(), static_cast<int>(m), moved_.tendon_force(row, m), paths_,
+                               applied_);
   }
 
   const MusculoskeletalSystem& system_;
   const MovedModel& moved_;
   SystemEvaluator<double> evaluator_;
+  MusculoskeletalSystem cut_;
+  Dynamics<double> dynamics_;
   PathWorkspace<double> paths_;
   std::vector<SpatialVector<double>> applied_;
   std::vector<double> tau_, z_, zdot_, zddot_;
-  Eigen::VectorXd q_;
 };
 
 Eigen::Matrix3d axes_of(const Joint& joint, const Mechanism& mechanism, const Kinematics<double>& kinematics,
@@ -99,15 +137,15 @@ Eigen::Matrix3d axes_of(const Joint& joint, const Mechanism& mechanism, const Ki
 }  // namespace
 
 JointReactions joint_reactions(const MusculoskeletalSystem& system, const MovedModel& moved, ReactionFrame frame) {
+  if (moved.qddot.size() > 0) system.refuse_loops("joint reactions of a given motion");
   const Model& model = system.model();
-  const Mechanism& mechanism = system.mechanism();
   JointReactions reactions;
-  for (std::size_t j = 0; j < model.joints.size(); ++j)
-    if (!model.joints[j].coordinates.empty()) reactions.joints.push_back(static_cast<int>(j));
+  for (std::size_t j = 0; j < model.joints.size(); ++j) reactions.joints.push_back(static_cast<int>(j));
   const auto rows = moved.q.rows(), columns = 3 * signed_index(reactions.joints.size());
   reactions.force.setZero(rows, columns);
   reactions.moment.setZero(rows, columns);
   ReactionSolver solver(system, moved);
+  const Mechanism& mechanism = solver.mechanism();
   for (Eigen::Index row = 0; row < rows; ++row) {
     solver.solve(row);
     const Kinematics<double>& kinematics = solver.dynamics().kinematics();

@@ -15,7 +15,7 @@ enum class ReactionFrame { kGround, kParent, kChild };
 /// What each joint transmits: force [N] on its child body, and moment [N m] about the origin of the joint's frame in
 /// the child. Rows are instants; three columns a joint.
 struct JointReactions {
-  std::vector<int> joints;  ///< of the model: those that move
+  std::vector<int> joints;  ///< of the model: all, welded ones too
   estimation::RowMatrix force, moment;
 };
 
@@ -34,7 +34,8 @@ struct MovedModel {
 /// Reactions by recursive Newton-Euler with the tensions of muscles where they pull: at the points of their paths and
 /// on their wrap objects. As cutting a joint would show, they have the moments of reserves, of coordinate forces and of
 /// couplers at the joint with them. Where nothing of the kind acts along a coordinate of the joint, no muscle has a
-/// moving point and constraints are met, the reaction does no work along it.
+/// moving point and constraints are met, the reaction does no work along it. Constraints that close loops pull too.
+/// @throws InputError for a given motion of a model with loops: their forces do not follow from it.
 [[nodiscard]] JointReactions joint_reactions(const MusculoskeletalSystem& system, const MovedModel& moved,
                                              ReactionFrame frame);
 

@@ -93,6 +93,7 @@ MotionAnalysis analyse_motion(const MusculoskeletalSystem& system, const Motion&
 MotionAnalysis optimise_motion(const MusculoskeletalSystem& system, const Motion& motion, const Eigen::VectorXd& rest,
                                const std::vector<double>& time, const StaticOptimizationOptions& options,
                                Progress& progress) {
+  system.refuse_loops("static optimization");
   MotionAnalysis analysis = empty_analysis(system, time, motion.external != nullptr);
   const auto rows = signed_index(time.size());
   const auto muscles = signed_index(system.muscles().size());

@@ -97,6 +97,7 @@ MusculoskeletalSystem::MusculoskeletalSystem(Model model, const SystemOptions& o
     : model_(prepare(std::move(model), options, notes_)),
       mechanism_(model_),
       reduction_(model_),
+      loops_(model_, mechanism_),
       paths_(model_, mechanism_, options.paths == PathSource::kAsOpenSim ? WrapMode::kAsOpenSim : WrapMode::kTaut),
       source_(options.paths),
       passive_(model_, mechanism_),
@@ -119,12 +120,21 @@ MusculoskeletalSystem::MusculoskeletalSystem(const MusculoskeletalSystem& other,
       model_(with_changes(other.model_, changes)),
       mechanism_(model_),
       reduction_(model_),
+      loops_(model_, mechanism_),
       paths_(other.paths_),
       fit_(other.fit_),
       source_(other.source_),
       passive_(other.passive_),
       muscles_(muscle_parameters(model_)) {
   lay_out_states();
+}
+
+void MusculoskeletalSystem::refuse_loops(std::string_view method) const {
+  if (loops_.empty()) return;
+  throw InputError(model_.name,
+                   fmt::format("{} does not know closed loops, and {} closes one; forward simulation and inverse "
+                               "dynamics do",
+                               method, loops_.constraints().front().text));
 }
 
 void MusculoskeletalSystem::lay_out_states() {

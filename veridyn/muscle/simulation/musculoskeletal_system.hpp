@@ -3,10 +3,12 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "veridyn/muscle/actuator/muscle_group.hpp"
 #include "veridyn/muscle/dynamics/coordinate_reduction.hpp"
+#include "veridyn/muscle/dynamics/loop_constraints.hpp"
 #include "veridyn/muscle/dynamics/mechanism.hpp"
 #include "veridyn/muscle/model/model.hpp"
 #include "veridyn/muscle/path/muscle_path.hpp"
@@ -78,6 +80,9 @@ class MusculoskeletalSystem {
   [[nodiscard]] const Model& model() const { return model_; }
   [[nodiscard]] const Mechanism& mechanism() const { return mechanism_; }
   [[nodiscard]] const CoordinateReduction& reduction() const { return reduction_; }
+  [[nodiscard]] const LoopConstraints& loops() const { return loops_; }
+  /// For methods that do not know loops. @throws InputError naming `method` and a constraint where there is one.
+  void refuse_loops(std::string_view method) const;
   [[nodiscard]] const MusclePaths& paths() const { return paths_; }
   /// Null unless paths are fitted.
   [[nodiscard]] const FittedPaths* fit() const { return fit_.get(); }
@@ -105,6 +110,7 @@ class MusculoskeletalSystem {
   Model model_;
   Mechanism mechanism_;
   CoordinateReduction reduction_;
+  LoopConstraints loops_;
   MusclePaths paths_;
   std::shared_ptr<const FittedPaths> fit_;
   PathSource source_;

@@ -6,7 +6,7 @@
 
 #include "veridyn/muscle/actuator/fiber_solver.hpp"
 #include "veridyn/muscle/actuator/muscle_group.hpp"
-#include "veridyn/muscle/dynamics/coordinate_reduction.hpp"
+#include "veridyn/muscle/dynamics/reduced_dynamics.hpp"
 #include "veridyn/muscle/model/external_load.hpp"
 #include "veridyn/muscle/path/path_workspace.hpp"
 #include "veridyn/muscle/simulation/musculoskeletal_system.hpp"

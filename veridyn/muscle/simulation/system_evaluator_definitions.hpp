@@ -30,7 +30,7 @@ template <typename Scalar>
 SystemEvaluator<Scalar>::SystemEvaluator(const MusculoskeletalSystem& system, MuscleGroup<Scalar> muscles)
     : system_(&system),
       muscles_(std::move(muscles)),
-      reduced_(system.mechanism(), system.reduction()),
+      reduced_(system.mechanism(), system.reduction(), &system.loops()),
       path_workspace_(system.paths()),
       passive_(system.passive().template workspace<Scalar>()),
       tau_(system.coordinates()),

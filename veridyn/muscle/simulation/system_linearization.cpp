@@ -47,6 +47,7 @@ SystemLinearization::SystemLinearization(const MusculoskeletalSystem& system,
       muscles_(system.muscles().with<double>(parameters)),
       fiber_solver_(muscles_.size()),
       passive_(system.passive().workspace<double>()) {
+  system.refuse_loops("a simulation with derivatives (estimation)");
   const std::size_t muscles = system.muscles().size();
   if (InverseDynamicsDerivatives::available(system.mechanism()) && system.reduction().free_are_uncoupled() &&
       system.passive().empty()) {

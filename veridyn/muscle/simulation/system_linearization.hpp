@@ -7,8 +7,8 @@
 
 #include "veridyn/muscle/actuator/fiber_solver.hpp"
 #include "veridyn/muscle/actuator/muscle_group.hpp"
-#include "veridyn/muscle/dynamics/coordinate_reduction.hpp"
 #include "veridyn/muscle/dynamics/inverse_dynamics_derivatives.hpp"
+#include "veridyn/muscle/dynamics/reduced_dynamics.hpp"
 #include "veridyn/muscle/model/simulation_jet.hpp"
 #include "veridyn/muscle/simulation/path_derivatives.hpp"
 #include "veridyn/muscle/simulation/system_evaluator.hpp"
