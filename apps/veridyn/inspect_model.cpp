@@ -33,6 +33,7 @@ std::string type_name(const MuscleParameters& muscle) {
   struct Names {
     const char* operator()(const ThelenCurves&) const { return "Thelen2003"; }
     const char* operator()(const DeprecatedThelenCurves&) const { return "Thelen2003_Deprecated"; }
+    const char* operator()(const SchutteCurves&) const { return "Schutte1993"; }
     const char* operator()(const MillardCurves&) const { return "Millard2012"; }
     const char* operator()(const DeGrooteFregly2016Curves&) const { return "DeGrooteFregly2016"; }
   };

@@ -59,6 +59,22 @@ TEST(PiecewisePolynomial, PolynomialTakesAscendingPowers) {
   EXPECT_EQ(PiecewisePolynomial::constant(4.0).evaluate(9.0).slope, 0.0);
 }
 
+TEST(PiecewisePolynomial, IntegralsAreExactAcrossPiecesAndBeyondThem) {
+  // The spline through a cubic is the cubic, straight beyond its ends.
+  const auto cubic = [](double x) { return 1.0 + x - 2.0 * x * x + 0.5 * x * x * x; };
+  const auto primitive = [](double x) { return x + 0.5 * x * x - 2.0 / 3.0 * x * x * x + 0.125 * x * x * x * x; };
+  const std::array<double, 5> x{-1.0, -0.2, 0.5, 1.1, 2.0};
+  std::array<double, 5> y{};
+  for (std::size_t i = 0; i < x.size(); ++i) y[i] = cubic(x[i]);
+  const PiecewisePolynomial f = PiecewisePolynomial::simm_spline(x, y);
+  EXPECT_NEAR(f.integral(-0.7, 1.8), primitive(1.8) - primitive(-0.7), 1e-14);
+  EXPECT_NEAR(f.integral(1.8, -0.7), primitive(-0.7) - primitive(1.8), 1e-14);
+  const double slope = f.evaluate(3.0).slope;
+  EXPECT_NEAR(f.integral(2.0, 4.0), 2.0 * y[4] + 2.0 * slope, 1e-13);
+  EXPECT_EQ(f.integral(0.3, 0.3), 0.0);
+  EXPECT_NEAR(PiecewisePolynomial::constant(2.5).integral(-3.0, 1.0), 10.0, 1e-15);
+}
+
 TEST(HeldPieces, AreWhatThePiecesSayTheRightOneAtABreak) {
   const auto spline = PiecewisePolynomial::held_pieces(
       std::vector{0.0, 1.0}, std::vector<std::array<double, 6>>{{2.0, 3.0}, {5.0, 0.0, 4.0}}, 2.0);

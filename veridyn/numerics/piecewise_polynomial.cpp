@@ -169,6 +169,25 @@ PiecewisePolynomial PiecewisePolynomial::held_pieces(std::span<const double> bre
   return f;
 }
 
+double PiecewisePolynomial::integral(double from, double to) const {
+  if (to < from) return -integral(to, from);
+  const std::size_t n = degree_ + 1;
+  double sum = 0.0;
+  for (std::size_t piece = 0; piece < origin_.size(); ++piece) {
+    const double a = piece > 0 ? std::max(from, breaks_[piece - 1]) : from;
+    const double b = piece < breaks_.size() ? std::min(to, breaks_[piece]) : to;
+    if (!(a < b)) continue;
+    double at_a = 0.0, at_b = 0.0;
+    for (std::size_t i = n; i-- > 0;) {
+      const double c = coefficient_[piece * n + i] / static_cast<double>(i + 1);
+      at_a = (at_a * (a - origin_[piece])) + c;
+      at_b = (at_b * (b - origin_[piece])) + c;
+    }
+    sum += at_b * (b - origin_[piece]) - at_a * (a - origin_[piece]);
+  }
+  return sum;
+}
+
 PiecewisePolynomial PiecewisePolynomial::scaled(double factor) const {
   PiecewisePolynomial f = *this;
   for (double& c : f.coefficient_) c *= factor;

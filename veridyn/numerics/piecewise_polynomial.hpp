@@ -51,6 +51,8 @@ class PiecewisePolynomial {
   [[nodiscard]] static PiecewisePolynomial held_pieces(std::span<const double> breaks,
                                                        std::span<const std::array<double, 6>> coefficients, double end);
 
+  /// Integral from `from` to `to`, exact but for rounding.
+  [[nodiscard]] double integral(double from, double to) const;
   /// This function times `factor`.
   [[nodiscard]] PiecewisePolynomial scaled(double factor) const;
   [[nodiscard]] bool is_constant() const { return breaks_.empty() && degree_ == 0; }

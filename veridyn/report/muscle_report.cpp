@@ -318,6 +318,7 @@ const char* type_name(const MuscleParameters& muscle) {
   struct Names {
     const char* operator()(const ThelenCurves&) const { return "Thelen 2003"; }
     const char* operator()(const DeprecatedThelenCurves&) const { return "Thelen 2003 (before 2012)"; }
+    const char* operator()(const SchutteCurves&) const { return "Schutte 1993"; }
     const char* operator()(const MillardCurves&) const { return "Millard 2012"; }
     const char* operator()(const DeGrooteFregly2016Curves&) const { return "De Groote-Fregly 2016"; }
   };

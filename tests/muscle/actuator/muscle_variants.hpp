@@ -27,6 +27,7 @@ inline std::vector<Variant> variants() {
     all.push_back({"Millard, undamped" + r, MillardCurves{}, 0.0, rigid});
     all.push_back({"De Groote" + r, DeGrooteFregly2016Curves{.activation_smoothing = 10.0}, 0.0, rigid});
     all.push_back({"De Groote, damped" + r, DeGrooteFregly2016Curves{}, 0.05, rigid});
+    all.push_back({"Schutte" + r, SchutteCurves{}, 0.0, rigid});
   }
   all.push_back({"Thelen, activation is excitation", arm26_thelen(), 0.0, false, true});
   return all;

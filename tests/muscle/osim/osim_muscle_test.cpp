@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +8,7 @@
 #include "tests/support/refusal.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/muscle/osim/osim_reader.hpp"
+#include "veridyn/muscle/path/muscle_path.hpp"
 
 namespace veridyn::muscle {
 namespace {
@@ -43,6 +45,12 @@ std::string muscle_of(const std::string& type, const std::string& more = "", con
   return "<" + type + " name=\"m\">" + more + "<GeometryPath name=\"path\"><PathPointSet><objects>" + points +
          "</objects></PathPointSet><PathWrapSet><objects>" + wraps + "</objects></PathWrapSet></GeometryPath></" +
          type + ">";
+}
+
+/// The same muscle with all its points on the ground.
+std::string with_ground_points(std::string text) {
+  for (std::size_t at; (at = text.find("/bodyset/rod")) != std::string::npos;) text.replace(at, 12, "/ground");
+  return text;
 }
 
 std::string refused(const std::string& forces) {
@@ -152,7 +160,66 @@ TEST(OsimForces, ActuatorsMayHaveNoBoundAndAreOffWhereTheFileSaysSo) {
   EXPECT_EQ(on.actuators[0].min_control, CoordinateActuator().min_control) << "as where it says nothing";
   EXPECT_EQ(on.actuators[0].max_control, 3.0);
   EXPECT_TRUE(pendulum(actuator + "<appliesForce>false</appliesForce></CoordinateActuator>").actuators.empty());
-  EXPECT_EQ(pendulum("<TorqueActuator name=\"b\"/>").unsupported.size(), 1U);
+  // Without a control they do nothing.
+  for (const char* type : {"TorqueActuator", "PointActuator", "BodyActuator", "PointToPointActuator"}) {
+    const Model model = pendulum(fmt::format("<{} name=\"b\"/>", type));
+    ASSERT_EQ(model.unsupported.size(), 1U) << type;
+    EXPECT_FALSE(model.unsupported[0].changes_motion) << type;
+  }
+}
+
+TEST(OsimMuscle, SchuttesHasItsCurvesAndFactors) {
+  const std::string more =
+      "<optimal_fiber_length>0.06</optimal_fiber_length><time_scale>0.2</time_scale><activation1>8</activation1>"
+      "<activation2>2</activation2><damping>0.05</damping><max_contraction_velocity>10</max_contraction_velocity>"
+      "<SimmSpline name=\"active_force_length_curve\"><x>0 0.5 1 1.5</x><y>0 0.6 1 0.6</y></SimmSpline>";
+  const MuscleParameters p = pendulum(muscle_of("Schutte1993Muscle_Deprecated", more)).muscles.at(0).parameters;
+  const auto* c = std::get_if<SchutteCurves>(&p.curves);
+  ASSERT_NE(c, nullptr);
+  EXPECT_EQ(c->damping, 0.05);
+  EXPECT_NEAR(c->active.evaluate(0.5).value, 0.6, 1e-15);
+  EXPECT_NEAR(c->tendon.evaluate(0.0103).value, 0.161, 1e-14) << "its class's own";
+  EXPECT_FALSE(c->passive);
+  EXPECT_NEAR(p.musculotendon.max_contraction_velocity, 5.0, 1e-15);
+  EXPECT_NEAR(p.musculotendon.activation_time_constant, 0.02, 1e-15);
+  EXPECT_NEAR(p.musculotendon.deactivation_time_constant, 0.1, 1e-15);
+  // The name before 2012, curves among the defaults of the class.
+  const Model old =
+      OsimFile::parse(
+          "<OpenSimDocument Version=\"20303\"><Model name=\"m\"><defaults><Schutte1993Muscle>"
+          "<passive_force_length_curve><PiecewiseLinearFunction><x>0 1</x><y>0 2</y>"
+          "</PiecewiseLinearFunction></passive_force_length_curve></Schutte1993Muscle></defaults><ForceSet>"
+          "<objects>" +
+              with_ground_points(muscle_of("Schutte1993Muscle")) + "</objects></ForceSet></Model></OpenSimDocument>",
+          "old.osim")
+          .model();
+  const auto* before = std::get_if<SchutteCurves>(&old.muscles.at(0).parameters.curves);
+  ASSERT_NE(before, nullptr);
+  ASSERT_TRUE(before->passive);
+  EXPECT_NEAR(before->passive->evaluate(0.5).value, 1.0, 1e-15);
+}
+
+TEST(OsimMuscle, AMovingPointMayStandInAnOffsetFrame) {
+  const std::string moving =
+      "<MovingPathPoint name=\"d\"><socket_parent_frame>tilted</socket_parent_frame>"
+      "<socket_x_coordinate>swing</socket_x_coordinate><x_location><LinearFunction><coefficients>0.1 0.05"
+      "</coefficients></LinearFunction></x_location><y_location><Constant><value>0</value></Constant></y_location>"
+      "<z_location><Constant><value>0</value></Constant></z_location></MovingPathPoint>";
+  const std::string text = muscle_of("Thelen2003Muscle", "", kPoints + moving);
+  const Model model =
+      pendulum(text +
+               "<BushingForce name=\"frames\"><appliesForce>false</appliesForce><frames><PhysicalOffsetFrame "
+               "name=\"tilted\"><socket_parent>/bodyset/rod</socket_parent><translation>0 -0.3 0</translation>"
+               "<orientation>0 0 1.5707963267948966</orientation></PhysicalOffsetFrame></frames></BushingForce>");
+  const Mechanism mechanism(model);
+  const MusclePaths paths(model, mechanism);
+  Kinematics<double> kinematics(mechanism);
+  const double q = 0.4;
+  update_positions(mechanism, &q, kinematics);
+  const std::vector<Eigen::Vector3d> line = paths.polyline(kinematics, &q, 0);
+  // The frame's x axis is the rod's y axis.
+  const Eigen::Vector3d expected = kinematics.pose[1] * Eigen::Vector3d(0.0, -0.3 + 0.1 * q + 0.05, 0.0);
+  EXPECT_LT((line.back() - expected).norm(), 1e-15);
 }
 
 TEST(OsimMuscle, MistakesAreNamedInOneLine) {

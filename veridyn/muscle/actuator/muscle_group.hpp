@@ -161,7 +161,8 @@ class MuscleGroup {
   std::vector<MuscleParameters> settings_;
   std::vector<std::pair<std::size_t, std::size_t>> place_;  ///< of each muscle: kind, position in its list
   std::tuple<std::vector<Member<Thelen2003>>, std::vector<Member<Thelen2003Deprecated>>,
-             std::vector<Member<Millard2012>>, std::vector<Member<DeGrooteFregly2016>>>
+             std::vector<Member<Millard2012>>, std::vector<Member<DeGrooteFregly2016>>,
+             std::vector<Member<Schutte1993>>>
       members_;
 };
 
@@ -329,8 +330,10 @@ auto MuscleGroup<Scalar>::with_member(std::size_t muscle, const Function& functi
       return function(std::get<1>(members_)[position]);
     case 2:
       return function(std::get<2>(members_)[position]);
-    default:
+    case 3:
       return function(std::get<3>(members_)[position]);
+    default:
+      return function(std::get<4>(members_)[position]);
   }
 }
 

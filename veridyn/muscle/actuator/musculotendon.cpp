@@ -77,12 +77,15 @@ void check_curves(const Rules& r, const DeGrooteFregly2016Curves& c) {
   r.positive("activation smoothing", c.activation_smoothing);
 }
 
+void check_curves(const Rules& r, const SchutteCurves& c) { r.positive("damping", c.damping); }
+
 CompiledCurves compiled(const ThelenCurves& c, const MuscleParameters&) { return Thelen2003(c); }
 CompiledCurves compiled(const DeprecatedThelenCurves& c, const MuscleParameters&) { return Thelen2003Deprecated(c); }
 CompiledCurves compiled(const MillardCurves& c, const MuscleParameters& p) {
   return Millard2012(c, p.rigid_tendon || p.fiber_damping >= Millard2012::kDampingThreshold);
 }
 CompiledCurves compiled(const DeGrooteFregly2016Curves& c, const MuscleParameters&) { return DeGrooteFregly2016(c); }
+CompiledCurves compiled(const SchutteCurves& c, const MuscleParameters&) { return Schutte1993(c); }
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/muscle/actuator/degroote_fregly2016.hpp"
 #include "veridyn/muscle/actuator/millard2012.hpp"
+#include "veridyn/muscle/actuator/schutte1993.hpp"
 #include "veridyn/muscle/actuator/thelen2003.hpp"
 #include "veridyn/muscle/actuator/thelen2003_deprecated.hpp"
 #include "veridyn/muscle/model/muscle_parameters.hpp"
@@ -21,7 +22,7 @@
 namespace veridyn::muscle {
 
 /// A muscle's curves, prepared for evaluation.
-using CompiledCurves = std::variant<Thelen2003, Thelen2003Deprecated, Millard2012, DeGrooteFregly2016>;
+using CompiledCurves = std::variant<Thelen2003, Thelen2003Deprecated, Millard2012, DeGrooteFregly2016, Schutte1993>;
 
 /// @throws InputError naming the muscle and the element: parameters that are not finite or out of range, curves whose
 /// shape parameters contradict each other.
@@ -86,6 +87,8 @@ struct MusculotendonConstants {
 [[nodiscard]] inline double minimum_norm_length(const Millard2012& c) { return c.min_length(); }
 /// Shortest fibre length that the curves allow, in optimal lengths.
 [[nodiscard]] inline double minimum_norm_length(const DeGrooteFregly2016&) { return DeGrooteFregly2016::kMinLength; }
+/// Shortest fibre length that the curves allow, in optimal lengths.
+[[nodiscard]] inline double minimum_norm_length(const Schutte1993&) { return Schutte1993::kMinLength; }
 
 /// Which limit a muscle is at.
 enum class MuscleLimit {

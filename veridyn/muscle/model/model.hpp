@@ -107,6 +107,7 @@ struct PathPoint {
   Eigen::Vector3d location = Eigen::Vector3d::Zero();  ///< in the body frame [m]
   int coordinate = -1;                                 ///< conditional
   double low = 0.0, high = 0.0;
+  Placement frame{};                                 ///< moving: in whose axes it is given, in the body
   std::array<int, 3> moving_coordinate{-1, -1, -1};  ///< moving: x, y, z; -1: a constant
   std::array<numerics::PiecewisePolynomial, 3> moving_location;
 };

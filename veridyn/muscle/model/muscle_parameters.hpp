@@ -3,8 +3,11 @@
 #include <array>
 #include <cstddef>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <variant>
+
+#include "veridyn/numerics/piecewise_polynomial.hpp"
 
 namespace veridyn::muscle {
 
@@ -72,8 +75,21 @@ struct DeGrooteFregly2016Curves {
   double activation_smoothing = 0.1;  ///< b of the activation law's tanh
 };
 
+/// Schutte et al. (1993) as OpenSim has it (`Schutte1993Muscle_Deprecated`): curves by splines.
+struct SchutteCurves {
+  /// Force over strain, and active force over length [L0]: OpenSim's own where the file gives none.
+  numerics::PiecewisePolynomial tendon = default_tendon();
+  numerics::PiecewisePolynomial active = default_active();
+  std::optional<numerics::PiecewisePolynomial> passive;  ///< over length [L0]; none: exponential
+  double damping = 0.1;                                  ///< of F0 per L0/time_scale
+
+  [[nodiscard]] static numerics::PiecewisePolynomial default_tendon();
+  [[nodiscard]] static numerics::PiecewisePolynomial default_active();
+};
+
 /// Curves of a muscle by the model that they belong to.
-using MuscleCurves = std::variant<ThelenCurves, DeprecatedThelenCurves, MillardCurves, DeGrooteFregly2016Curves>;
+using MuscleCurves =
+    std::variant<ThelenCurves, DeprecatedThelenCurves, MillardCurves, DeGrooteFregly2016Curves, SchutteCurves>;
 
 /// The parameters of one musculotendon unit that can be estimated; a template, so that automatic differentiation gives
 /// derivatives with respect to them.

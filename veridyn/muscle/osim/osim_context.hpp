@@ -56,6 +56,8 @@ void read_markers(Context& context);
 
 /// Everything but the curves and the path of a Muscle element.
 [[nodiscard]] bool is_muscle(std::string_view type);
+/// A Schutte1993Muscle by either of its names.
+[[nodiscard]] bool is_schutte(std::string_view type);
 /// Reads a muscle of the set of forces. @throws InputError with file, line and element.
 void read_muscle(Context& context, const Element& element);
 

@@ -83,9 +83,10 @@ numerics::PiecewisePolynomial read_function(const Element& function, int depth) 
 }  // namespace
 
 Element find_function(const Element& owner, const char* property) {
-  for (const pugi::xml_node child : owner.node().children()) {
-    if (std::strcmp(child.attribute("name").value(), property) == 0 && is_function(child)) {
-      return {owner.document(), child};
+  for (const pugi::xml_node node : {owner.node(), owner.document().defaults(owner.node().name())}) {
+    for (const pugi::xml_node child : node.children()) {
+      if (std::strcmp(child.attribute("name").value(), property) == 0 && is_function(child))
+        return {owner.document(), child};
     }
   }
   for (const pugi::xml_node child : owner.property(property).children()) {

@@ -35,9 +35,7 @@ PathPoint read_point(Context& context, const Element& element) {
   point.kind = PathPointKind::kMoving;
   constexpr std::array<const char*, 3> kCoordinate{"x_coordinate", "y_coordinate", "z_coordinate"};
   constexpr std::array<const char*, 3> kLocation{"x_location", "y_location", "z_location"};
-  if (!frame.placement.rotation.isIdentity(0.0) || !frame.placement.translation.isZero(0.0)) {
-    element.fail("socket_parent_frame", "a moving point in an offset frame is not understood");
-  }
+  point.frame = frame.placement;
   for (std::size_t i = 0; i < 3; ++i) {
     const Element function = find_function(element, kLocation[i]);
     if (!function) element.fail(kLocation[i], "missing");
@@ -176,6 +174,21 @@ DeGrooteFregly2016Curves read_degroote(const Element& e) {
   return c;
 }
 
+/// Its time scale and activation factors, which OpenSim has in place of speeds and time constants.
+SchutteCurves read_schutte(const Element& e, MusculotendonParameters<double>& m) {
+  SchutteCurves c;
+  c.damping = e.positive_or("damping", c.damping);
+  if (const Element f = find_function(e, "tendon_force_length_curve")) c.tendon = read_function(f);
+  if (const Element f = find_function(e, "active_force_length_curve")) c.active = read_function(f);
+  if (const Element f = find_function(e, "passive_force_length_curve")) c.passive = read_function(f);
+  const double time_scale = e.positive_or("time_scale", 0.1);
+  const double faster = e.positive_or("activation1", 7.667), slow = e.positive_or("activation2", 1.459854);
+  m.max_contraction_velocity = 1.0 / time_scale;
+  m.activation_time_constant = time_scale / (faster + slow);
+  m.deactivation_time_constant = time_scale / slow;
+  return c;
+}
+
 void read_coordinate_actuator(Context& context, const Element& e) {
   CoordinateActuator a;
   a.name = e.name();
@@ -217,9 +230,11 @@ void read_path(Context& context, const Element& element, std::vector<PathPoint>&
   }
 }
 
+bool is_schutte(std::string_view type) { return type == "Schutte1993Muscle_Deprecated" || type == "Schutte1993Muscle"; }
+
 bool is_muscle(std::string_view type) {
   return type == "Thelen2003Muscle" || type == "Thelen2003Muscle_Deprecated" ||
-         type == "Millard2012EquilibriumMuscle" || type == "DeGrooteFregly2016Muscle";
+         type == "Millard2012EquilibriumMuscle" || type == "DeGrooteFregly2016Muscle" || is_schutte(type);
 }
 
 void read_muscle(Context& context, const Element& e) {
@@ -253,6 +268,8 @@ void read_muscle(Context& context, const Element& e) {
     m.activation_time_constant = 0.010;
     m.deactivation_time_constant = 0.040;
     p.fiber_damping = e.not_negative_or("fiber_damping", 0.1);
+  } else if (is_schutte(type)) {
+    p.curves = read_schutte(e, m);
   } else {
     p.curves = read_degroote(e);
     m.activation_time_constant = 0.015;
@@ -260,8 +277,10 @@ void read_muscle(Context& context, const Element& e) {
     p.fiber_damping = e.not_negative_or("fiber_damping", 0.0);
     p.minimum_activation = 0.0;
   }
-  m.activation_time_constant = e.positive_or("activation_time_constant", m.activation_time_constant);
-  m.deactivation_time_constant = e.positive_or("deactivation_time_constant", m.deactivation_time_constant);
+  if (!is_schutte(type)) {
+    m.activation_time_constant = e.positive_or("activation_time_constant", m.activation_time_constant);
+    m.deactivation_time_constant = e.positive_or("deactivation_time_constant", m.deactivation_time_constant);
+  }
   p.minimum_activation = e.not_negative_or("minimum_activation", p.minimum_activation);
   p.maximum_pennation_angle = e.positive_or("maximum_pennation_angle", p.maximum_pennation_angle);
   p.default_activation = e.not_negative_or("default_activation", p.default_activation);
@@ -288,7 +307,8 @@ void read_forces(Context& context) {
       read_muscle(context, element);
     } else if (type == "CoordinateActuator") {
       if (on) read_coordinate_actuator(context, element);
-    } else if (type == "PathActuator") {
+    } else if (type == "PathActuator" || type == "PointActuator" || type == "TorqueActuator" ||
+               type == "BodyActuator" || type == "PointToPointActuator") {
       // As those on coordinates: no force unless something controls it, which is nothing here.
       if (on) context.unsupported(element, false);
     } else if (!on || !read_passive_force(context, element)) {

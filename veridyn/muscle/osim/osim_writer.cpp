@@ -60,6 +60,10 @@ std::string OsimFile::text_with(const Model& changed) const {
     for (std::size_t i = 0; i < kMusculotendonFields.size(); ++i) {
       const double value = field_of(muscle.parameters.musculotendon, i);
       if (value != field_of(old, i)) {
+        constexpr std::size_t kVmax = 4;
+        if (osim::is_schutte(node.name()) && i >= kVmax)
+          throw InputError(document_->place(node),
+                           fmt::format("has no {} that could be written", kMusculotendonFields[i].name));
         edits.push_back(edit_of(document_->text(), node, kMusculotendonFields[i].name, value));
       }
     }

@@ -107,7 +107,7 @@ MusclePaths::PathStation MusclePaths::station(const Model& model, const Mechanis
   if (p.kind == PathPointKind::kMoving) {
     MovingPoint moving;
     moving.point = static_cast<int>(points_.size());
-    moving.in_link = place.in_link;
+    moving.in_link = place.in_link * p.frame;
     moving.coordinate = p.moving_coordinate;
     moving.location = p.moving_location;
     for (std::size_t axis = 0; axis < 3; ++axis) {

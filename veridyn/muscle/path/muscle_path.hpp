@@ -108,7 +108,7 @@ class MusclePaths {
   };
   struct MovingPoint {
     int point = 0;
-    Placement in_link;  ///< of its body
+    Placement in_link;  ///< of the frame it is given in
     std::array<int, 3> coordinate{-1, -1, -1};
     std::array<double, 3> low{}, high{};  ///< of the coordinate's range; beyond it the point stays, as OpenSim's does
     std::array<numerics::PiecewisePolynomial, 3> location;
