@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/muscle/osim/osim_reader.hpp"
@@ -159,6 +161,34 @@ TEST(OsimForce, ABlankevoortLigamentIsReadWithItsDefaults) {
   EXPECT_DOUBLE_EQ(law.damping_coefficient, 0.003);
   EXPECT_THAT(error_of(fmt::format("<Blankevoort1991Ligament name=\"acl\">{}</Blankevoort1991Ligament>", kPath)),
               HasSubstr("slack_length"));
+}
+
+TEST(OsimForce, FormulasAreReadWithTheirVariables) {
+  const Model model = with_forces(
+      "<ExpressionBasedCoordinateForce name=\"c\"><coordinate>angle</coordinate><expression> -10*q - 0.5*qdot^3 "
+      "</expression></ExpressionBasedCoordinateForce>"
+      "<ExpressionBasedPointToPointForce name=\"p\"><socket_body1>/ground</socket_body1><socket_body2>/bodyset/bar"
+      "</socket_body2><point2>0 1 0</point2><expression>3/d^2</expression></ExpressionBasedPointToPointForce>"
+      "<ExpressionBasedBushingForce name=\"b\"><socket_frame1>/ground</socket_frame1><socket_frame2>/bodyset/bar"
+      "</socket_frame2><Mz_expression>2*theta_z + delta_x</Mz_expression><rotational_damping>1 2 3"
+      "</rotational_damping></ExpressionBasedBushingForce>");
+  EXPECT_TRUE(model.unsupported.empty());
+  const ExpressionForces& f = model.expression_forces;
+  ASSERT_EQ(f.coordinates.size(), 1U);
+  EXPECT_NEAR(f.coordinates[0].force(std::array{0.2, 2.0}), -6.0, 1e-15);
+  ASSERT_EQ(f.points.size(), 1U);
+  EXPECT_EQ(f.points[0].body_2, 1);
+  EXPECT_EQ(f.points[0].point_2, Eigen::Vector3d::UnitY());
+  EXPECT_NEAR(f.points[0].force(std::array{2.0, 0.0}), 0.75, 1e-15);
+  ASSERT_EQ(f.bushings.size(), 1U);
+  EXPECT_EQ(f.bushings[0].bushing.rotational_damping, Eigen::Vector3d(1.0, 2.0, 3.0));
+  ASSERT_EQ(f.bushings[0].resistance.size(), 6U);
+  const std::array deflection{0.0, 0.0, 0.3, 0.1, 0.0, 0.0};
+  EXPECT_NEAR(f.bushings[0].resistance[2](deflection), 0.7, 1e-15);
+  EXPECT_EQ(f.bushings[0].resistance[0](deflection), 0.0);
+  EXPECT_THAT(error_of("<ExpressionBasedCoordinateForce name=\"c\"><coordinate>angle</coordinate><expression>-10*x"
+                       "</expression></ExpressionBasedCoordinateForce>"),
+              testing::AllOf(HasSubstr("m.osim:"), HasSubstr("expression: '-10*x'")));
 }
 
 }  // namespace

@@ -35,6 +35,17 @@ TEST(PassiveForces, AMassOnAPathSpringSwingsAsItsEquationSays) {
     EXPECT_NEAR(t.q(i, 0), y0 - 0.05 * std::cos(omega * t.time[i]), 1e-7) << t.time[i];
 }
 
+TEST(PassiveForces, AFormulaOnACoordinateSwingsAMassAsItsEquationSays) {
+  // m y'' = -m g - k q: about -m g/k with omega = sqrt(k/m).
+  const Model model = on_a_slider(
+      "<ExpressionBasedCoordinateForce name=\"f\"><coordinate>height</coordinate><expression>-200*q</expression>"
+      "</ExpressionBasedCoordinateForce>");
+  const MuscleTrajectory t = released(model, 0.05, 1.0);
+  ASSERT_EQ(t.end, SimulationEnd::kCompleted);
+  for (std::size_t i = 0; i < t.time.size(); ++i)
+    EXPECT_NEAR(t.q(i, 0), -0.1 + 0.15 * std::cos(10.0 * t.time[i]), 1e-7) << t.time[i];
+}
+
 TEST(PassiveForces, ALigamentHoldsAMassWhereItsCurveCarriesTheWeight) {
   // Curve strain: force 40 strain, against 20 N: strain 0.5, length 0.6, height 0.4, released there.
   const Model model =

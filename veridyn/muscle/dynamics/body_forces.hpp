@@ -75,8 +75,11 @@ void add_force(const PointSpring& spring, const Mechanism& mechanism, const Kine
 /// Bushing: of frame 2 in frame 1, angles t of a body-fixed x-y-z sequence and translation d are held by linear springs
 /// and dampers, f = -K (t, d) - C (t', d'). With t' = N w (w the relative angular velocity in frame 2) the moment is
 /// N' f_t, so that the spring's energy is K (t, d)^2 / 2. Singular at a second angle of 90 deg.
-template <typename Scalar, typename Receiver>
-void add_force(const Bushing& bushing, const Mechanism& mechanism, const Kinematics<Scalar>& kinematics, Receiver* to) {
+///
+/// `resist(t, d, torque, push)` takes what springs do off the generalised forces of the angles and of the translation.
+template <typename Scalar, typename Receiver, typename Resist>
+void add_bushing(const Bushing& bushing, const Mechanism& mechanism, const Kinematics<Scalar>& kinematics,
+                 const Resist& resist, Receiver* to) {
   using std::asin;
   using std::atan2;
   using std::cos;
@@ -95,14 +98,25 @@ void add_force(const Bushing& bushing, const Mechanism& mechanism, const Kinemat
   N << cz * per_cy, -sz * per_cy, Scalar(0.0), sz, cz, Scalar(0.0), -cz * sine * per_cy, sz * sine * per_cy,
       Scalar(1.0);
   const Vector3<Scalar> rates = N * spin;
-  const Vector3<Scalar> torque = -t.cwiseProduct(bushing.rotational_stiffness.cast<Scalar>().eval()) -
-                                 rates.cwiseProduct(bushing.rotational_damping.cast<Scalar>().eval());
-  const Vector3<Scalar> push = -d.cwiseProduct(bushing.translational_stiffness.cast<Scalar>().eval()) -
-                               slide.cwiseProduct(bushing.translational_damping.cast<Scalar>().eval());
+  Vector3<Scalar> torque = -rates.cwiseProduct(bushing.rotational_damping.cast<Scalar>().eval());
+  Vector3<Scalar> push = -slide.cwiseProduct(bushing.translational_damping.cast<Scalar>().eval());
+  resist(t, d, torque, push);
   const Vector3<Scalar> force = one.rotation * push;
   const Vector3<Scalar> moment = two.rotation * Vector3<Scalar>(N.transpose() * torque);
   add_force_at<Scalar>(mechanism, kinematics, two.link, two.position, force, moment, to);
   add_force_at<Scalar>(mechanism, kinematics, one.link, two.position, -force, -moment, to);
+}
+
+/// With linear springs.
+template <typename Scalar, typename Receiver>
+void add_force(const Bushing& bushing, const Mechanism& mechanism, const Kinematics<Scalar>& kinematics, Receiver* to) {
+  add_bushing(
+      bushing, mechanism, kinematics,
+      [&](const Vector3<Scalar>& t, const Vector3<Scalar>& d, Vector3<Scalar>& torque, Vector3<Scalar>& push) {
+        torque -= t.cwiseProduct(bushing.rotational_stiffness.cast<Scalar>().eval());
+        push -= d.cwiseProduct(bushing.translational_stiffness.cast<Scalar>().eval());
+      },
+      to);
 }
 
 /// Hertz's force of a sphere and a half space, 4/3 k sqrt(R k) depth^(3/2) with k = stiffness^(2/3)/2 [N].

@@ -10,6 +10,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/muscle/model/body_force.hpp"
+#include "veridyn/muscle/model/expression_force.hpp"
 #include "veridyn/muscle/model/loop_constraint.hpp"
 #include "veridyn/muscle/model/muscle_parameters.hpp"
 #include "veridyn/muscle/model/placement.hpp"
@@ -250,6 +251,7 @@ struct Model {
   std::vector<CoordinateLimitForce> limit_forces;
   std::vector<CoordinateSpring> coordinate_springs;
   BodyForces body_forces;
+  ExpressionForces expression_forces;
   std::vector<PassivePath> passive_paths;
   std::vector<Marker> markers;
   std::vector<UnsupportedElement> unsupported;

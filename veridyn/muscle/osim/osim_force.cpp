@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/error.hpp"
 #include "veridyn/muscle/osim/osim_context.hpp"
 #include "veridyn/muscle/osim/osim_function.hpp"
 
@@ -58,7 +59,14 @@ void read_point_spring(Context& context, const Element& e) {
   context.model.body_forces.springs.push_back(std::move(s));
 }
 
-void read_bushing(Context& context, const Element& e) {
+Eigen::Vector3d bushing_constants(const Element& e, const char* property) {
+  Eigen::Vector3d v = e.vector_or(property, Eigen::Vector3d::Zero());
+  if (!(v.minCoeff() >= 0.0)) e.fail(property, "all three must not be negative");
+  return v;
+}
+
+/// Frames and dampers of a bushing.
+Bushing bushing_frames(Context& context, const Element& e) {
   Bushing b;
   b.name = e.name();
   const FrameReference one = end_frame(context, e, "frame1", "body_1"), two = end_frame(context, e, "frame2", "body_2");
@@ -70,16 +78,51 @@ void read_bushing(Context& context, const Element& e) {
   b.body_2 = two.body;
   b.frame_1 = placed(one, "location_body_1", "orientation_body_1");
   b.frame_2 = placed(two, "location_body_2", "orientation_body_2");
-  const auto constants = [&](const char* property) {
-    Eigen::Vector3d v = e.vector_or(property, Eigen::Vector3d::Zero());
-    if (!(v.minCoeff() >= 0.0)) e.fail(property, "all three must not be negative");
-    return v;
-  };
-  b.rotational_stiffness = constants("rotational_stiffness");
-  b.translational_stiffness = constants("translational_stiffness");
-  b.rotational_damping = constants("rotational_damping");
-  b.translational_damping = constants("translational_damping");
+  b.rotational_damping = bushing_constants(e, "rotational_damping");
+  b.translational_damping = bushing_constants(e, "translational_damping");
+  return b;
+}
+
+void read_bushing(Context& context, const Element& e) {
+  Bushing b = bushing_frames(context, e);
+  b.rotational_stiffness = bushing_constants(e, "rotational_stiffness");
+  b.translational_stiffness = bushing_constants(e, "translational_stiffness");
   context.model.body_forces.bushings.push_back(std::move(b));
+}
+
+/// The formula of a property; "0" where there is none.
+Expression formula(const Element& e, const char* property, std::vector<std::string> variables) {
+  const std::string text = e.text_or(property, "");
+  try {
+    return {text.empty() ? "0" : text, std::move(variables)};
+  } catch (const InputError& error) {
+    e.fail(property, error.what());
+  }
+}
+
+void read_expression_coordinate_force(Context& context, const Element& e) {
+  const int coordinate = context.coordinate(e, "coordinate", e.text_or("coordinate", ""));
+  context.model.expression_forces.coordinates.push_back(
+      {e.name(), coordinate, formula(e, "expression", {"q", "qdot"})});
+}
+
+void read_expression_point_force(Context& context, const Element& e) {
+  const FrameReference one = end_frame(context, e, "body1", "body1"), two = end_frame(context, e, "body2", "body2");
+  context.model.expression_forces.points.push_back(
+      {.name = e.name(),
+       .body_1 = one.body,
+       .body_2 = two.body,
+       .point_1 = one.placement * e.vector_or("point1", Eigen::Vector3d::Zero()),
+       .point_2 = two.placement * e.vector_or("point2", Eigen::Vector3d::Zero()),
+       .force = formula(e, "expression", {"d", "ddot"})});
+}
+
+void read_expression_bushing(Context& context, const Element& e) {
+  ExpressionBushing b{bushing_frames(context, e), {}};
+  for (const char* property :
+       {"Mx_expression", "My_expression", "Mz_expression", "Fx_expression", "Fy_expression", "Fz_expression"})
+    b.resistance.push_back(formula(e, property, {"theta_x", "theta_y", "theta_z", "delta_x", "delta_y", "delta_z"}));
+  context.model.expression_forces.bushings.push_back(std::move(b));
 }
 
 /// A contact geometry of the file by its name; nothing when it is not there.
@@ -228,6 +271,9 @@ bool read_passive_force(Context& context, const Element& e) {
   if (type == "SmoothSphereHalfSpaceForce") return read_smooth_contact(context, e);
   if (type == "PathSpring") return read_path_spring(context, e), true;
   if (type == "Ligament") return read_ligament(context, e), true;
+  if (type == "ExpressionBasedCoordinateForce") return read_expression_coordinate_force(context, e), true;
+  if (type == "ExpressionBasedPointToPointForce") return read_expression_point_force(context, e), true;
+  if (type == "ExpressionBasedBushingForce") return read_expression_bushing(context, e), true;
   if (type == "Blankevoort1991Ligament") return read_blankevoort_ligament(context, e), true;
   return false;
 }

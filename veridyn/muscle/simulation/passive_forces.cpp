@@ -18,7 +18,8 @@ Model with_passive_paths(Model model) {
 
 }  // namespace
 
-PassiveForces::PassiveForces(const Model& model, const Mechanism& mechanism) : bodies_(model.body_forces) {
+PassiveForces::PassiveForces(const Model& model, const Mechanism& mechanism)
+    : bodies_(model.body_forces), expressions_(model.expression_forces) {
   for (const PassivePath& path : model.passive_paths) laws_.push_back(path.law);
   if (!laws_.empty()) paths_ = std::make_shared<const MusclePaths>(with_passive_paths(model), mechanism);
 }
@@ -26,6 +27,10 @@ PassiveForces::PassiveForces(const Model& model, const Mechanism& mechanism) : b
 void PassiveForces::add_to_links(const Mechanism& mechanism, const Kinematics<double>& kinematics, const double* q,
                                  const double* qdot, std::span<SpatialVector<double>> by_link) const {
   if (!bodies_.empty()) add_body_forces(bodies_, mechanism, kinematics, by_link.data());
+  if (!expressions_.empty()) {
+    const ExpressionForces own = expressions_;
+    add_body_expressions(own, mechanism, kinematics, by_link.data());
+  }
   if (!paths_) return;
   PathWorkspace<double> lengths(*paths_), pulling(*paths_);
   paths_->evaluate(kinematics, q, lengths);

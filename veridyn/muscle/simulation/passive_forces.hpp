@@ -7,6 +7,7 @@
 
 #include "veridyn/muscle/dynamics/body_forces.hpp"
 #include "veridyn/muscle/dynamics/coordinate_forces.hpp"
+#include "veridyn/muscle/dynamics/expression_forces.hpp"
 #include "veridyn/muscle/path/muscle_path.hpp"
 #include "veridyn/muscle/path/path_workspace.hpp"
 
@@ -16,20 +17,23 @@ namespace veridyn::muscle {
 template <typename Scalar>
 struct PassiveWorkspace {
   std::optional<PathWorkspace<Scalar>> paths;
+  ExpressionForces expressions;  ///< a thread's own copy
 };
 
 /// Forces of a model that follow from its motion alone and act on more than a coordinate: between bodies
-/// (`dynamics/body_forces.hpp`) and along paths (path springs, ligaments). Those of single coordinates are in
-/// `dynamics/coordinate_forces.hpp`. Immutable; used by many threads at once.
+/// (`dynamics/body_forces.hpp`), along paths (path springs, ligaments), and by formulas
+/// (`dynamics/expression_forces.hpp`). Those of single coordinates are in `dynamics/coordinate_forces.hpp`. Immutable;
+/// used by many threads at once.
 class PassiveForces {
  public:
   PassiveForces(const Model& model, const Mechanism& mechanism);
 
-  [[nodiscard]] bool empty() const { return bodies_.empty() && !paths_; }
+  [[nodiscard]] bool empty() const { return bodies_.empty() && expressions_.empty() && !paths_; }
   template <typename Scalar>
   [[nodiscard]] PassiveWorkspace<Scalar> workspace() const {
     PassiveWorkspace<Scalar> made;
     if (paths_) made.paths.emplace(*paths_);
+    made.expressions = expressions_;
     return made;
   }
 
@@ -43,6 +47,10 @@ class PassiveForces {
   void add(const Mechanism& mechanism, const Kinematics<Scalar>& kinematics, const Scalar* q, const Scalar* qdot,
            PassiveWorkspace<Scalar>& workspace, Scalar* tau) const {
     if (!bodies_.empty()) add_body_forces(bodies_, mechanism, kinematics, tau);
+    if (!expressions_.empty()) {
+      add_coordinate_expressions(workspace.expressions, q, qdot, tau);
+      add_body_expressions(workspace.expressions, mechanism, kinematics, tau);
+    }
     if (!paths_) return;
     PathWorkspace<Scalar>& w = *workspace.paths;
     paths_->evaluate(kinematics, q, w);
@@ -58,6 +66,7 @@ class PassiveForces {
 
  private:
   BodyForces bodies_;
+  ExpressionForces expressions_;
   std::vector<PassivePathLaw> laws_;
   std::shared_ptr<const MusclePaths> paths_;
 };
