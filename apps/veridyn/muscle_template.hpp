@@ -80,6 +80,8 @@ default = 0.05
 # torque = "ground_torque_"      # N m
 # [motion]
 # joint_reactions = "child"      # what joints transmit, in axes of "child", "parent" or "ground"
+# induced_accelerations = true   # what each muscle contributes to each acceleration
+# metabolic_cost = "umberger"    # the energy that muscles use; or "bhargava"
 
 [motion.reserves]                # N m or N, of single coordinates instead of reserve_force
 # pelvis_ty = 0

@@ -30,6 +30,8 @@ void write_results(OutputFolder& folder, const MuscleStudy& study, const MuscleR
   if (const auto controls = control_storage(study, result))
     folder.write("controls.sto", [&](const Path& path) { io::write_storage(*controls, path); });
   if (result.reactions) folder.write("reactions.csv", io::to_csv(reaction_table(study, result)));
+  if (result.metabolic) folder.write("metabolics.csv", io::to_csv(metabolic_table(study, result)));
+  if (result.induced) folder.write("induced_accelerations.csv", io::to_csv(induced_table(study, result)));
   if (const auto contacts = contact_record(study, result)) {
     folder.write("contact_forces.sto", [&](const Path& path) { io::write_storage(contacts->storage, path); });
     folder.write("contact_loads.xml", to_external_loads_text(contacts->sources, "contact_forces.sto"));

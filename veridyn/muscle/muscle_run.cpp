@@ -29,6 +29,18 @@ std::optional<JointReactions> reactions_of(const MuscleStudy& study, const Muscl
   return joint_reactions(*study.system, moved, *study.reactions);
 }
 
+/// What each force contributes to the accelerations of the result's motion.
+std::optional<InducedAccelerations> induced_of(const MuscleStudy& study, const MuscleTrajectory& t) {
+  if (!study.induced_accelerations) return std::nullopt;
+  return induced_accelerations(*study.system, {.time = t.time,
+                                               .q = t.q,
+                                               .qdot = t.qdot,
+                                               .qddot = {},
+                                               .tendon_force = t.tendon_force,
+                                               .reserve = t.reserve,
+                                               .external = study.motion.external.get()});
+}
+
 /// Looks at the external loads of an analysed motion.
 void check_loads(const MuscleStudy& study, const MotionAnalysis& analysis, MuscleResult& result) {
   if (!study.motion.external || analysis.interrupted) return;
@@ -178,7 +190,13 @@ MuscleResult run_study(const MuscleStudy& study, Progress& progress) {
       result = follow(study, progress);
       break;
   }
+  result.induced = induced_of(study, result.trajectory);
+  if (study.metabolic) result.metabolic = metabolic_cost(*study.system, result.trajectory, *study.metabolic);
   result.notes = study.system->notes();
+  if (result.metabolic)
+    result.notes.push_back(fmt::format("metabolic cost: {:.4g} J, of which the body at rest {:.4g} J",
+                                       result.metabolic->energy,
+                                       result.metabolic->basal * (result.trajectory.end_time - study.begin)));
   if (study.method == MuscleMethod::kForward || study.method == MuscleMethod::kComputedMuscleControl) {
     for (std::string& warning : range_warnings(study, result.trajectory)) result.warnings.push_back(std::move(warning));
   }

@@ -10,7 +10,9 @@
 #include "veridyn/muscle/muscle_study.hpp"
 #include "veridyn/muscle/simulation/contact_record.hpp"
 #include "veridyn/muscle/simulation/external_load_check.hpp"
+#include "veridyn/muscle/simulation/induced_accelerations.hpp"
 #include "veridyn/muscle/simulation/joint_reactions.hpp"
+#include "veridyn/muscle/simulation/metabolic_cost.hpp"
 
 namespace veridyn::muscle {
 
@@ -27,6 +29,8 @@ struct MuscleResult {
   std::optional<MuscleControls> controls;
   /// What joints transmit, as the study asks for it.
   std::optional<JointReactions> reactions;
+  std::optional<InducedAccelerations> induced;  ///< as the study asks for it
+  std::optional<MetabolicCost> metabolic;       ///< as the study asks for it
   std::optional<ExternalLoadFit> external_fit;  ///< of a motion with external loads
   std::vector<double> overloaded;  ///< instants at which the muscles could not produce the desired motion [s]
   std::vector<std::string> notes;
@@ -47,6 +51,10 @@ struct MuscleResult {
 [[nodiscard]] Recording muscle_table(const MuscleStudy& study, const MuscleResult& result);
 /// reactions.csv: by joint force on the child body and moment about the joint.
 [[nodiscard]] Recording reaction_table(const MuscleStudy& study, const MuscleResult& result);
+/// metabolics.csv: power by muscle, of the body at rest, and of all.
+[[nodiscard]] Recording metabolic_table(const MuscleStudy& study, const MuscleResult& result);
+/// induced_accelerations.csv: COORDINATE_by_SOURCE.
+[[nodiscard]] Recording induced_table(const MuscleStudy& study, const MuscleResult& result);
 /// contact_forces.sto and contact_loads.xml: what the model's contacts did in a simulation, as external loads of
 /// another study. Nothing without contacts or where the motion was given.
 [[nodiscard]] std::optional<ContactRecord> contact_record(const MuscleStudy& study, const MuscleResult& result);

@@ -110,6 +110,28 @@ void refuse_other_methods(const StudyTable& motion, MuscleMethod method) {
   }
 }
 
+std::optional<MetabolicOptions> read_metabolic(const StudyTable& motion, const MuscleStudy& study) {
+  constexpr internal::Words<std::optional<MetabolicModel>, 3> kModels{{{"none", std::nullopt},
+                                                                       {"umberger", MetabolicModel::kUmberger2003},
+                                                                       {"bhargava", MetabolicModel::kBhargava2004}}};
+  const std::optional<MetabolicModel> model = internal::word_or_first(motion, "metabolic_cost", kModels);
+  const StudyTable shares = motion.table_or_empty("slow_twitch");
+  MetabolicOptions options;
+  options.slow_twitch.assign(study.system->muscles().size(), 0.5);
+  for (const std::string& key : shares.keys()) {
+    const std::size_t muscle = internal::muscle_of(shares, key, key, study.system->model());
+    options.slow_twitch[muscle] = shares.number(key, "1");
+    if (!(options.slow_twitch[muscle] >= 0.0 && options.slow_twitch[muscle] <= 1.0))
+      shares.fail(key, fmt::format("{:g} must be from 0 to 1", options.slow_twitch[muscle]));
+  }
+  if (!model) return std::nullopt;
+  if (study.method == MuscleMethod::kInverseDynamics)
+    motion.fail("metabolic_cost", "inverse dynamics finds no activations that could cost");
+  options.model = *model;
+  options.aerobic_factor = motion.number_or("aerobic_factor", "1", options.aerobic_factor);
+  return options;
+}
+
 std::optional<ReactionFrame> read_reactions(const StudyTable& motion) {
   constexpr internal::Words<std::optional<ReactionFrame>, 4> kFrames{{{"none", std::nullopt},
                                                                       {"child", ReactionFrame::kChild},
@@ -209,6 +231,10 @@ MuscleStudy read_study(const Study& source, Progress& progress) {
     study.desired_coordinates = std::move(desired.coordinates);
   }
   study.reactions = read_reactions(motion);
+  study.metabolic = read_metabolic(motion, study);
+  study.induced_accelerations = motion.flag_or("induced_accelerations", false);
+  if (study.induced_accelerations && study.method == MuscleMethod::kInverseDynamics)
+    motion.fail("induced_accelerations", "inverse dynamics finds no forces of muscles that could contribute");
   study.motion.external = internal::remembered(internal::read_external_loads(motion, study), study);
   study.controls.external = study.motion.external;
   check_contact(root.table("subject"), study);

@@ -13,6 +13,7 @@
 #include "veridyn/muscle/simulation/computed_muscle_control.hpp"
 #include "veridyn/muscle/simulation/forward_simulation.hpp"
 #include "veridyn/muscle/simulation/joint_reactions.hpp"
+#include "veridyn/muscle/simulation/metabolic_cost.hpp"
 #include "veridyn/muscle/simulation/musculoskeletal_system.hpp"
 #include "veridyn/muscle/simulation/static_optimization.hpp"
 
@@ -58,7 +59,9 @@ struct MuscleStudy : MuscleSubject {
   double accuracy = 1e-5;
   std::vector<double> reserves = {};  ///< by coordinate: force of the actuator that helps it [N m or N]; 0: none
 
-  std::optional<ReactionFrame> reactions = {};  ///< what joints transmit is computed, in these axes
+  std::optional<ReactionFrame> reactions = {};     ///< what joints transmit is computed, in these axes
+  std::optional<MetabolicOptions> metabolic = {};  ///< the energy that muscles use is computed
+  bool induced_accelerations = false;              ///< what each force contributes to accelerations is computed
 
   StartState start = {};                               ///< forward
   MuscleControls controls = {};                        ///< forward
@@ -111,6 +114,8 @@ struct MuscleStudy : MuscleSubject {
 ///     duration = 1                   # [s]
 ///     shape = "minimum jerk"         # "half sine", "linear"
 ///     joint_reactions = "child"      # in the axes of which body of a joint: "parent", "ground"; "none" when left out
+///     metabolic_cost = "umberger"    # the energy that muscles use: "bhargava"; "none" when left out
+///     induced_accelerations = true   # what each muscle contributes to each acceleration; false when left out
 ///     external_loads = "grf.xml"     # OpenSim's ExternalLoads: forces of the surroundings, with their data
 ///     external_loads_data = "grf.mot"  # in place of the data file that it names
 ///     external_low_pass = "20 Hz"    # of all these forces, without delay; none when left out

@@ -74,6 +74,35 @@ Recording reaction_table(const MuscleStudy& study, const MuscleResult& result) {
   return recording;
 }
 
+Recording metabolic_table(const MuscleStudy& study, const MuscleResult& result) {
+  const TimeBase time = make_time_base(result.trajectory.time);
+  Recording recording;
+  recording.source = study.title;
+  const MetabolicCost& cost = *result.metabolic;
+  std::vector<double> total(cost.power.rows(), cost.basal);
+  for (Eigen::Index m = 0; m < cost.power.cols(); ++m) {
+    recording.add(make_channel(study.system->model().muscles[m].name() + "_power", "W", time, column(cost.power, m)));
+    for (std::size_t i = 0; i < total.size(); ++i) total[i] += cost.power(i, m);
+  }
+  recording.add(make_channel("basal_power", "W", time, std::vector<double>(total.size(), cost.basal)));
+  recording.add(make_channel("total_power", "W", time, total));
+  return recording;
+}
+
+Recording induced_table(const MuscleStudy& study, const MuscleResult& result) {
+  const TimeBase time = make_time_base(result.trajectory.time);
+  Recording recording;
+  recording.source = study.title;
+  const InducedAccelerations& induced = *result.induced;
+  for (std::size_t c = 0; c < induced.coordinates.size(); ++c) {
+    const Coordinate& k = study.system->model().coordinates[induced.coordinates[c]];
+    for (std::size_t s = 0; s < induced.sources.size(); ++s)
+      recording.add(make_channel(fmt::format("{}_by_{}", k.name, induced.sources[s]), k.unit() + "/s^2", time,
+                                 column(induced.part[c], s)));
+  }
+  return recording;
+}
+
 std::optional<ContactRecord> contact_record(const MuscleStudy& study, const MuscleResult& result) {
   const bool moved = study.method == MuscleMethod::kForward || study.method == MuscleMethod::kComputedMuscleControl;
   if (!moved || study.system->model().body_forces.contacts.empty()) return std::nullopt;
