@@ -67,8 +67,11 @@ TEST(LoopConstraints, WhatCannotHoldIsNamed) {
     return std::string("no error");
   };
   EXPECT_THAT(refusal(), testing::HasSubstr("ConstantDistanceConstraint 'no length'"));
+  // Bodies that cannot move against each other.
   model.loops.back() = {.name = "same", .kind = LoopKind::kPoint, .body_1 = 2, .body_2 = 2};
-  EXPECT_THAT(refusal(), testing::HasSubstr("PointConstraint 'same': its bodies cannot move against each other"));
+  EXPECT_EQ(LoopConstraints(model, Mechanism(model)).rows(), 3) << "of the hinge";
+  model.loops.back().frame_1.translation = {0.0, 0.1, 0.0};
+  EXPECT_THAT(refusal(), testing::HasSubstr("PointConstraint 'same': its bodies are welded to each other 0.1 away"));
 }
 
 }  // namespace

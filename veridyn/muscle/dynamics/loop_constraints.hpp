@@ -35,7 +35,8 @@ struct LoopRow {
 ///     weld:           those of a point, and x1 . y2, y1 . z2, z1 . x2
 class LoopConstraints {
  public:
-  /// @throws InputError naming a constraint of a body with itself or without a distance.
+  /// Constraints between bodies that are welded to each other are left out. @throws InputError naming one that does
+  /// not hold there, or has no distance.
   LoopConstraints(const Model& model, const Mechanism& mechanism);
 
   struct Constraint {
@@ -66,6 +67,7 @@ class LoopConstraints {
   }
 
  private:
+  static void check_at_rest(const Constraint& constraint, const Mechanism& mechanism);
   template <typename Scalar>
   static void evaluate(const Constraint& constraint, const Kinematics<Scalar>& kinematics, LoopRow<Scalar>* row);
 
