@@ -148,7 +148,7 @@ std::string assembly_text(const MusculoskeletalSystem& system, const Assembly& a
   constexpr double kWorthTelling = 1e-6;
   if (assembly.moved < 0 || assembly.by < kWorthTelling) return {};
   const Coordinate& c = system.model().coordinates[assembly.moved];
-  return fmt::format("to close the model's loops '{}' starts at {:.6g} {}, {:.2g} {} from where it was to", c.name,
+  return fmt::format("to close the model's loops '{}' starts at {:.6g} {}, {:.2g} {} from the start given", c.name,
                      assembly.q(assembly.moved), c.unit(), assembly.by, c.unit());
 }
 

@@ -23,7 +23,8 @@ struct Assembly {
 [[nodiscard]] Assembly assemble(const MusculoskeletalSystem& system, const Eigen::VectorXd& q,
                                 const Eigen::VectorXd& qdot);
 
-/// "to close the model's loops 'knee_angle' starts 0.12 rad from where it was to"; empty when nothing moved.
+/// "to close the model's loops 'knee_angle' starts at 0.5 rad, 0.12 rad from the start given"; empty when nothing
+/// moved.
 [[nodiscard]] std::string assembly_text(const MusculoskeletalSystem& system, const Assembly& assembly);
 
 }  // namespace veridyn::muscle
