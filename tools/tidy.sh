@@ -7,11 +7,11 @@ jobs=$2
 shift 2
 export analyzer='clang-analyzer-core.*,clang-analyzer-cplusplus.*,clang-analyzer-deadcode.*'
 # clang knows neither the precompiled headers of g++ nor its limits of inlining: their flags are taken out of a copy of the
-# compile commands.
+# compile commands. Its -Wconversion includes signs, that of g++ does not.
 copy=$(mktemp -d)
 trap 'rm -rf "$copy"' EXIT
 export copy
-sed -E 's/-Winvalid-pch//; s/-include [^ "]*cmake_pch\.hxx//; s/-finline-limit=[0-9]+//; s/--param=[a-z-]+=[0-9]+//g' "$build/compile_commands.json" >"$copy/compile_commands.json"
+sed -E 's/-Winvalid-pch//; s/-include [^ "]*cmake_pch\.hxx//; s/-finline-limit=[0-9]+//; s/--param=[a-z-]+=[0-9]+//g; s/-Wconversion/-Wconversion -Wno-sign-conversion/' "$build/compile_commands.json" >"$copy/compile_commands.json"
 
 tidy() { # SOURCE
   local checks=-bugprone-suspicious-include # sources compiled together include each other

@@ -337,6 +337,15 @@ Solution solved(FilterKind kind, const internal::SolveTask& task, Progress& prog
   return internal::solve_model_free(task, progress);
 }
 
+/// What was solved for, as a recording; without channels where nothing was.
+Recording recording_of(ResultColumns& columns, const TimeBase& time, std::size_t count, const std::string& source) {
+  Recording recording;
+  recording.source = source;
+  recording.frame = Frame::kFrd;
+  if (count > 0) columns.move_into(recording, time, count);
+  return recording;
+}
+
 }  // namespace
 
 std::string reconstruction_obstacle(const Recording& mapped, const ReconstructOptions& options) {
@@ -430,14 +439,8 @@ Reconstruction reconstruct(const Recording& mapped, const ReconstructOptions& gi
   }
   stamps.time.resize(solution.count);
   const TimeBase time = make_time_base(std::move(stamps.time));
-  const auto finish = [&](Recording& recording, ResultColumns& columns) {
-    recording.source = mapped.source;
-    recording.frame = Frame::kFrd;
-    if (solution.count == 0) return;
-    columns.move_into(recording, time, solution.count);
-  };
-  finish(out.smoothed, *solution.smoothed);
-  if (solution.filtered) finish(out.filtered, *solution.filtered);
+  out.smoothed = recording_of(*solution.smoothed, time, solution.count, mapped.source);
+  if (solution.filtered) out.filtered = recording_of(*solution.filtered, time, solution.count, mapped.source);
   if (solution.filtered && solution.guard)
     internal::add_guard_channels(*solution.guard, time, solution.count, out.filtered);
   return out;

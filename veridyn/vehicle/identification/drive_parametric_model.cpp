@@ -206,6 +206,20 @@ Scalar DriveParametricModel::recorded(DriveSignal signal, const Scalar& shown, c
   }
 }
 
+template <typename Scalar>
+void DriveParametricModel::delay_outputs(const std::vector<std::vector<Scalar>>& shown, const Parameters<Scalar>& theta,
+                                         Outputs<Scalar>& output) const {
+  for (std::size_t j = 0; j < compared_.size(); ++j) {
+    const DriveSignal signal = compared_[j].signal;
+    if (signal != DriveSignal::kYawRate && signal != DriveSignal::kAccelY) continue;
+    const DriveUnknown which =
+        signal == DriveSignal::kYawRate ? DriveUnknown::kYawRateDelay : DriveUnknown::kAccelYDelay;
+    const Scalar delay = theta(static_cast<Eigen::Index>(which)) / grid_.step;
+    for (std::size_t k = 0; k < shown[j].size(); ++k)
+      output(k, j) = recorded(signal, between(shown[j], Scalar(static_cast<double>(k) - delay)), theta);
+  }
+}
+
 template <int kStates, typename Scalar, typename Tyre>
 bool DriveParametricModel::drive(const Segment& segment, const RollingBicycle<Scalar, Tyre>& model,
                                  const Parameters<Scalar>& theta, Extent extent, Outputs<Scalar>& output) const {
@@ -287,16 +301,7 @@ bool DriveParametricModel::drive(const Segment& segment, const RollingBicycle<Sc
       now = next;
     }
   }
-  if (!delayed) return true;
-  for (std::size_t j = 0; j < compared_.size(); ++j) {
-    const DriveSignal signal = compared_[j].signal;
-    if (signal != DriveSignal::kYawRate && signal != DriveSignal::kAccelY) continue;
-    const Scalar delay =
-        unknown(signal == DriveSignal::kYawRate ? DriveUnknown::kYawRateDelay : DriveUnknown::kAccelYDelay) / step;
-    for (std::size_t k = 0; k < n; ++k)
-      output(signed_index(k), signed_index(j)) =
-          recorded(signal, between(shown[j], Scalar(static_cast<double>(k) - delay)), theta);
-  }
+  if (delayed) delay_outputs(shown, theta, output);
   return true;
 }
 

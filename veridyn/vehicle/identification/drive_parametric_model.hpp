@@ -139,6 +139,10 @@ class DriveParametricModel : public estimation::AutodiffModel<DriveParametricMod
   /// The same as it is recorded, delays apart.
   template <typename Scalar>
   [[nodiscard]] Scalar recorded(DriveSignal signal, const Scalar& shown, const Parameters<Scalar>& theta) const;
+  /// Replaces outputs whose sensors are late by what `shown` (by output, then sample) was before.
+  template <typename Scalar>
+  void delay_outputs(const std::vector<std::vector<Scalar>>& shown, const Parameters<Scalar>& theta,
+                     Outputs<Scalar>& output) const;
   /// About straight driving at speed u.
   [[nodiscard]] LinearDrive linearized(double u, const Eigen::VectorXd& theta) const;
   [[nodiscard]] DriveNoise noise_at(double u, const Eigen::VectorXd& theta) const;
