@@ -252,7 +252,8 @@ class Parser {
     if (!data) return value;
     const std::size_t width = width_of(data->type);
     if (width == 0) return std::nullopt;
-    budget_.take(static_cast<double>(data->data.size() / width), value.name);
+    const std::size_t count = data->data.size() / width;
+    budget_.take(static_cast<double>(count), value.name);
     std::string characters;
     for (std::size_t i = 0; i + width <= data->data.size(); i += width) {
       const double code = number_at(data->data.data() + i, data->type, swap_);
