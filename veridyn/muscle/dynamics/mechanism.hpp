@@ -183,7 +183,8 @@ Scalar over_ellipsoid(const JointAxis& axis, const Scalar* q, Motion& motion) {
   using std::cos;
   using std::sin;
   const Scalar &a = q[axis.coordinate], &b = q[axis.second];
-  const Scalar sa = sin(a), ca = cos(a), sb = Scalar(axis.slope) * sin(b), cb = Scalar(axis.slope) * cos(b);
+  const Scalar sa = sin(a), ca = cos(a), cb = Scalar(axis.slope) * cos(b);
+  Scalar sb = Scalar(axis.slope) * sin(b);
   if (axis.ellipsoid == 0) {
     motion.slope = motion.curvature = motion.mixed = Scalar(0.0);
     motion.slope_2 = cb;
