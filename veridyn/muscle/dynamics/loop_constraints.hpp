@@ -39,6 +39,7 @@ class LoopConstraints {
   /// not hold there, or has no distance.
   LoopConstraints(const Model& model, const Mechanism& mechanism);
 
+  /// One constraint, as its links see it.
   struct Constraint {
     std::string text;  ///< for messages
     LoopKind kind = LoopKind::kPoint;
