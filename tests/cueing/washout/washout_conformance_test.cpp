@@ -267,8 +267,8 @@ void run_adversary(const std::string& name, const Platform& platform, long steps
 }
 
 TEST_P(EveryWashout, ThePlatformKeepsItsLimitsWhateverComesIn) {
-  // A fault of one step in two thousand is met with 95 %; the soak below takes a million.
-  run_adversary(GetParam().algorithm, platform(), test::kSanitized ? 2000 : 6000, 11);
+  // A fault of one step in five thousand is met with 95 %; the soak below takes a million.
+  run_adversary(GetParam().algorithm, platform(), test::kSanitized ? 5000 : 15000, 11);
 }
 
 TEST_P(EveryWashout, SoakThePlatformKeepsItsLimitsInAMillionSteps) {
