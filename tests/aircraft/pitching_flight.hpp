@@ -104,7 +104,7 @@ inline CoefficientResult identified_cm(const Subject& subject, const FlightSigna
   options.coefficients = {Coefficient::kCm};
   options.method = method;
   Progress silent;
-  return identify_coefficients(only_flight(signals, pitching_segments()), subject, options, silent).at(0);
+  return identify_coefficients(only_flight(signals, pitching_segments()), subject, options, silent).coefficients.at(0);
 }
 
 }  // namespace veridyn::aircraft::testing

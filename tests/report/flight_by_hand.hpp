@@ -31,6 +31,7 @@ inline aircraft::CoefficientResult pitch_by_hand() {
   chosen.covariance.resize(2, 2);
   chosen.covariance << 4.0, 3.0, 3.0, 9.0;
   r.chosen = chosen;
+  r.method = estimation::to_string(chosen.method);
   r.identification_fit = {.r2 = 0.98, .theil = 0.02, .count = 500};
   r.holdout_fit = {.r2 = 0.971, .theil = 0.0312, .count = 200};
   r.error_ratio = 1.25;

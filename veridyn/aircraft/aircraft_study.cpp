@@ -262,9 +262,14 @@ std::vector<estimation::RecordingUse> recordings_of(const FlightAnalysis& analys
   return recordings;
 }
 
+/// The parameters with their covariance.
+estimation::Estimate estimate_of(const FlightStudy& study, const FlightAnalysis& analysis) {
+  return make_estimate(study.subject, analysis.coefficients, analysis.others.output_error);
+}
+
 /// What estimate.json will say of an analysis that is complete but for it.
 estimation::Estimate summarise(std::span<const FlightStudy> studies, const FlightAnalysis& analysis) {
-  estimation::Estimate estimate = make_estimate(studies.front().subject, analysis.coefficients);
+  estimation::Estimate estimate = estimate_of(studies.front(), analysis);
   for (const OtherParameter& other : analysis.others.parameters) estimate.other_methods.push_back(other.estimate);
   estimate.verdict = verdict_text(analysis.coefficients);
   for (const PredictedQuantity& q : analysis.validation.quantities) {
@@ -337,9 +342,9 @@ FlightAnalysis identify(std::span<const FlightStudy> studies, Progress& progress
   FlightAnalysis analysis = prepared(studies, progress);
   if (analysis.interrupted) return analysis;
   if (!any_motion(analysis)) return without_motion(std::move(analysis), studies, progress);
-  analysis.coefficients = identify_coefficients(analysis.flights, study.subject, study.identify, progress);
-  analysis.others =
-      compare_other_estimators(analysis.flights, study.subject, analysis.coefficients, study.identify, progress);
+  Identification found = identify_coefficients(analysis.flights, study.subject, study.identify, progress);
+  analysis.others = compare_other_estimators(analysis.flights, study.subject, found, study.identify, progress);
+  analysis.coefficients = std::move(found.coefficients);
   progress.stage("uncertainty of the measured coefficients");
   if (study.uncertainty.enabled) {
     analysis.uncertainty = coefficient_uncertainty(
@@ -350,8 +355,7 @@ FlightAnalysis identify(std::span<const FlightStudy> studies, Progress& progress
   analysis.identified = identified_subject(study.subject, analysis.coefficients);
   analysis.validation = validate_flights(analysis.flights, RowUse::kHoldout, analysis.identified,
                                          identified_coefficients(analysis.coefficients), study.validate);
-  analysis.open_loop =
-      open_loop_of(analysis, RowUse::kHoldout, study, make_estimate(study.subject, analysis.coefficients), progress);
+  analysis.open_loop = open_loop_of(analysis, RowUse::kHoldout, study, estimate_of(study, analysis), progress);
   return with_results(std::move(analysis), studies, progress);
 }
 

@@ -94,7 +94,7 @@ Section method_section(const FlightStudy& study, const FlightAnalysis& analysis)
       {"Common grid", fmt::format("{:.0f} Hz, every {}. sample regressed on", s.grid.rate_Hz(), s.stride)},
       {"Pass band", fmt::format("0 to {:.1f} Hz, zero phase", s.filter.pass_Hz)},
       {"Hold-out", holdout_text(study)},
-      {"Estimator", std::string(study.identify.method ? estimation::to_string(*study.identify.method) : "auto")}};
+      {"Estimator", study.identify.method_name()}};
   for (const FlightSignal which : {FlightSignal::kAlpha, FlightSignal::kBeta, FlightSignal::kP, FlightSignal::kAz}) {
     const GridSignal& signal = s[which];
     const bool angle = which != FlightSignal::kAz;

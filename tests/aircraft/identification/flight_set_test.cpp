@@ -21,7 +21,7 @@ CoefficientResult cm_of_set(const Subject& subject, std::span<const PreparedFlig
   options.coefficients = {Coefficient::kCm};
   options.method = estimation::Method::kOls;
   Progress silent;
-  return identify_coefficients(flights, subject, options, silent).at(0);
+  return identify_coefficients(flights, subject, options, silent).coefficients.at(0);
 }
 
 estimation::Evidence scatter_row_of(const CoefficientResult& result) {

@@ -27,7 +27,7 @@ constexpr double kWeakModel = 0.2;
 /// is taken all the same.
 Evidence choice_of_method(const estimation::RegressionComparison& comparison, const IdentifyOptions& options) {
   return {.name = "choice of the method",
-          .outcome = passed_or(comparison.recommends, options.method ? Outcome::kCare : Outcome::kFailed),
+          .outcome = passed_or(comparison.recommends, options.method_fixed() ? Outcome::kCare : Outcome::kFailed),
           .value = comparison.recommends ? 1.0 : 0.0,
           .limit = 1.0,
           .scale = "methods that may be recommended",
@@ -119,6 +119,18 @@ Evidence against_start(const CoefficientChecks& checks) {
 }
 
 Evidence parts_of_the_flight(const CoefficientChecks& checks, double level) {
+  if (std::isnan(checks.contradiction_p)) {
+    return {.name = "agreement of the flight's parts",
+            .outcome = Outcome::kNotVerified,
+            .value = checks.contradiction_p,
+            .limit = level,
+            .scale = "p",
+            .text =
+                "the hold-out by itself does not determine its parameters, so that nothing shows whether two parts "
+                "of the flight agree",
+            .bears_on = Purpose::kParameters,
+            .advice = "hold out manoeuvres that excite all that is identified"};
+  }
   const bool passed = checks.contradiction_p >= level;
   return {.name = "agreement of the flight's parts",
           .outcome = passed_or(passed, Outcome::kFailed),

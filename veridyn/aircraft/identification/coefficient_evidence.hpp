@@ -16,7 +16,7 @@ struct CoefficientChecks {
   double error_ratio = 0.0;
   double holdout_ratio = 0.0;  ///< residual variance on the hold-out over what the sensors' errors leave there
   double unmodelled_share = 0.0;
-  double contradiction_p = 1.0;
+  double contradiction_p = 1.0;  ///< NaN: the hold-out by itself gives no estimate
   /// Share of the hold-out outside the band of 95 % that the residual of the identification part gives.
   double outside_bands = 0.0;
   /// Root mean square error on the hold-out over that of the values that the study started from; NaN without these.

@@ -22,10 +22,6 @@ using estimation::RegressionEstimate;
 /// Factor on the standard deviation within which the noise of the sensors is known.
 constexpr double kNoiseTolerance = 2.0;
 
-double unmodelled_share(double r2, double error_ratio) {
-  return (1.0 - r2) * std::max(0.0, 1.0 - kNoiseTolerance * kNoiseTolerance / error_ratio);
-}
-
 /// The estimate by the given method, or the recommended one; null where there is none.
 const RegressionEstimate* choose(const RegressionComparison& comparison, std::optional<Method> method) {
   const auto usable = [&](Method m) {
@@ -139,7 +135,7 @@ CoefficientFit fit_coefficient(CoefficientModel model, const FlightView& view) {
     // The errors of the regressors explain all: then the residual is compared with theirs and the sensors' of z.
     if (!(fit.error_ratio > 0.0)) fit.error_ratio = residual_ratio(by_sensors, chosen->theta);
     for (std::size_t i = 0; i < fit.model.size(); ++i) fit.model.values[i] = chosen->theta(i);
-    fit.unmodelled_share = unmodelled_share(fit_on(data, chosen->theta).r2, fit.error_ratio);
+    fit.unmodelled_share = unmodelled_share_of(fit);
   }
   return fit;
 }
@@ -162,6 +158,11 @@ FlightFits fit_each_flight(CoefficientFit& fit, const FlightView& view) {
   fit.error_ratio = over_rows(each.fits, &CoefficientFit::error_ratio);
   fit.unmodelled_share = over_rows(each.fits, &CoefficientFit::unmodelled_share);
   return each;
+}
+
+double unmodelled_share_of(const CoefficientFit& fit) {
+  const double r2 = fit_on(fit.rows.data, fit.chosen->theta).r2;
+  return (1.0 - r2) * std::max(0.0, 1.0 - kNoiseTolerance * kNoiseTolerance / fit.error_ratio);
 }
 
 CoefficientChecks check_fit(const CoefficientFit& fit, double row_interval_s, const FlightFits* each,
@@ -195,7 +196,10 @@ CoefficientChecks check_fit(const CoefficientFit& fit, double row_interval_s, co
     return checks;
   }
   unseen.error_covariance(n, n) = data.error_covariance(n, n);
-  const RegressionEstimate again = estimation::estimate(unseen, chosen.method, view.regression_options());
+  const RegressionEstimate again = fit.by_output_error
+                                       ? fit.of_holdout.value_or(RegressionEstimate{})
+                                       : estimation::estimate(unseen, chosen.method, view.regression_options());
+  checks.contradiction_p = kNaN;
   if (again.usable()) {
     const estimation::Agreement agreement = agreement_of(chosen, again);
     checks.contradiction_p = agreement.p;

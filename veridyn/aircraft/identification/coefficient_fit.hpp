@@ -40,6 +40,8 @@ struct CoefficientFit {
   double error_ratio = 0.0;
   double unmodelled_share = 0.0;  ///< see CoefficientResult
   bool enough_rows = false;
+  bool by_output_error = false;                              ///< `chosen` is output error's, see take_output_error
+  std::optional<estimation::RegressionEstimate> of_holdout;  ///< then: the same from the hold-out, where it has any
 };
 
 /// Of all rows of all flights together.
@@ -55,6 +57,9 @@ struct FlightFits {
 /// choice of the method and checks of it (the worst of the flights), and what is in the residual beyond the sensors
 /// (over the rows of the flights, each by its own parameters).
 [[nodiscard]] FlightFits fit_each_flight(CoefficientFit& fit, const FlightView& view);
+
+/// Share of the variance of the identification rows that `chosen` leaves neither modelled nor noise of the sensors.
+[[nodiscard]] double unmodelled_share_of(const CoefficientFit& fit);
 
 /// The figures by which a fit is judged.
 /// @param each  of several flights; null: there is one

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "veridyn/aircraft/identification/body_error.hpp"
+#include "veridyn/aircraft/identification/chosen_output_error.hpp"
 #include "veridyn/aircraft/identification/coefficient_description.hpp"
 #include "veridyn/aircraft/identification/coefficient_evidence.hpp"
 #include "veridyn/aircraft/identification/coefficient_fit.hpp"
@@ -27,6 +28,7 @@ using estimation::RegressionData;
 using estimation::RegressionEstimate;
 using estimation::RegressionOptions;
 using estimation::StructureMethod;
+using internal::ChosenOutputError;
 using internal::CoefficientFit;
 using internal::fit_coefficient;
 using internal::FlightView;
@@ -127,9 +129,10 @@ std::string objection(const CoefficientResult& judged, const CoefficientChecks& 
                      100.0 * checks.holdout_fit.r2, first);
 }
 
-/// Of an estimate that may be used. `dominant` is the constant of the aircraft that makes up most of its error bars.
+/// Of an estimate that may be used. `method` gave it, `dominant` is the constant of the aircraft that makes up most of
+/// its error bars.
 ExplainedVerdict explain(const CoefficientResult& described, const RegressionEstimate& chosen,
-                         const CoefficientChecks& checks, const std::string& dominant) {
+                         const CoefficientChecks& checks, const std::string& method, const std::string& dominant) {
   const std::string& name = described.name;
   const auto with_status = [&](ParameterStatus status) {
     std::vector<std::string> names;
@@ -142,11 +145,11 @@ ExplainedVerdict explain(const CoefficientResult& described, const RegressionEst
   const std::vector<std::string> insignificant = with_status(ParameterStatus::kInsignificant);
   if (with_status(ParameterStatus::kIdentified).empty() && !unexcited.empty())
     return {estimation::GroupVerdict::kNotExcited, fmt::format("{} is not excited: {}", name, chosen.message)};
-  std::string reason = checks.has_holdout
-                           ? fmt::format("{} is identified by {}: it explains {:.0f} % of the hold-out", name,
-                                         estimation::to_string(chosen.method), 100.0 * checks.holdout_fit.r2)
-                           : fmt::format("{} is identified by {}, but there was no hold-out to validate it on", name,
-                                         estimation::to_string(chosen.method));
+  std::string reason =
+      checks.has_holdout
+          ? fmt::format("{} is identified by {}: it explains {:.0f} % of the hold-out", name, method,
+                        100.0 * checks.holdout_fit.r2)
+          : fmt::format("{} is identified by {}, but there was no hold-out to validate it on", name, method);
   if (!dominant.empty()) reason += fmt::format("; its error bars are mostly those of {}", dominant);
   if (described.per_unit_inertia)
     reason += "; per unit inertia, which is not given (inertial coupling of a flat body assumed)";
@@ -175,11 +178,16 @@ std::vector<FlightEstimate> flight_estimates(const internal::FlightFits& each,
   return estimates;
 }
 
-/// One coefficient: terms, estimates, checks, verdict.
-CoefficientResult identify_coefficient(const CoefficientModel& given, const FlightView& flight) {
+/// A coefficient's terms and regressions, before they are judged.
+struct FittedCoefficient {
+  CoefficientResult result;  ///< with a reason where there is nothing to fit
+  CoefficientFit fit;
+};
+
+FittedCoefficient fit_terms(const CoefficientModel& given, const FlightView& flight) {
   const IdentifyOptions& options = flight.options;
   CoefficientResult result = internal::described(given, flight.flights, flight.subject);
-  if (!result.reason.empty()) return result;
+  if (!result.reason.empty()) return {std::move(result), {}};
   ChosenTerms terms =
       options.structure ? choose_terms(given, *options.structure, flight) : ChosenTerms{given, std::nullopt};
   result.structure = std::move(terms.search);
@@ -188,16 +196,27 @@ CoefficientResult identify_coefficient(const CoefficientModel& given, const Flig
     CoefficientModel kept = significant_terms(fit.model, *fit.chosen);
     if (kept.size() > 0 && kept.size() < fit.model.size()) fit = fit_coefficient(std::move(kept), flight);
   }
+  return {std::move(result), std::move(fit)};
+}
+
+/// Checks and verdict of a fitted coefficient, or of what output error made of it.
+CoefficientResult judged(FittedCoefficient fitted, const FlightView& flight, const ChosenOutputError* flown) {
+  const IdentifyOptions& options = flight.options;
+  auto& [result, fit] = fitted;
+  if (!result.reason.empty()) return std::move(result);
+  std::optional<internal::FlightFits> each;
+  if (fit.chosen && flight.flights.size() > 1) each = internal::fit_each_flight(fit, flight);
+  if (flown != nullptr) internal::take_output_error(fit, *flown, each ? &each->scatter : nullptr, flight);
 
   ExplainedVerdict verdict{estimation::GroupVerdict::kRejected,
                            fmt::format("{}: {}", result.name, fit.comparison.reason)};
   if (!fit.enough_rows) verdict = not_excited(result.name, fit, flight, result.axis);
   if (fit.chosen) {
-    std::optional<internal::FlightFits> each;
-    if (flight.flights.size() > 1) each = internal::fit_each_flight(fit, flight);
+    result.method = fit.by_output_error ? "output error" : estimation::to_string(fit.chosen->method);
     const CoefficientChecks checks = internal::check_fit(fit, result.row_interval_s, each ? &*each : nullptr, flight);
     const bool scatters = each && each->scatter.found();
     if (!scatters) estimation::widen(*fit.chosen, checks.scatter, options.significance);
+    if (fit.by_output_error) result.output_error_widening = internal::widening_of(fit, *flown);
     result.evidence = coefficient_evidence(result.name, checks, fit.comparison, options);
     if (each) {
       result.evidence.push_back(scatter_row(result.name, each->scatter, *fit.chosen));
@@ -205,11 +224,11 @@ CoefficientResult identify_coefficient(const CoefficientModel& given, const Flig
       result.flight_estimates = flight_estimates(*each, flight.flights);
     }
     std::vector<estimation::Evidence> plausible;
-    if (!result.per_unit_inertia) plausible = plausibility(given.coefficient, fit.chosen->parameters, flight.subject);
+    if (!result.per_unit_inertia) plausible = plausibility(result.coefficient, fit.chosen->parameters, flight.subject);
     result.evidence.insert(result.evidence.end(), plausible.begin(), plausible.end());
     for (const PreparedFlight& one : flight.flights) {
       for (const FlightEvidence& of_recording : one.recording_evidence)
-        if (of_recording.bears_on(given.coefficient)) result.evidence.push_back(of_recording.row);
+        if (of_recording.bears_on(result.coefficient)) result.evidence.push_back(of_recording.row);
     }
     result.judgement = estimation::judge(result.evidence);
     const estimation::GroupVerdict reached = estimation::verdict_of(result.judgement);
@@ -218,8 +237,8 @@ CoefficientResult identify_coefficient(const CoefficientModel& given, const Flig
       widen(*fit.chosen, result.body_sensitivity, options.significance);
       // What each flight leaves in doubt is in their scatter.
       if (!scatters) widen(*fit.chosen, doubts_of_air_data(fit, flight, true), options.significance);
-      verdict =
-          explain(result, *fit.chosen, checks, dominant_constant(*fit.chosen, result.body_sensitivity, flight.subject));
+      verdict = explain(result, *fit.chosen, checks, result.method,
+                        dominant_constant(*fit.chosen, result.body_sensitivity, flight.subject));
     } else {
       verdict = {reached, objection(result, checks)};
     }
@@ -248,6 +267,14 @@ CoefficientResult identify_coefficient(const CoefficientModel& given, const Flig
   return with_series(std::move(result), flight.flights, flight.subject);
 }
 
+/// Output error from where the regressions ended.
+ChosenOutputError fly_axes(std::span<const FittedCoefficient> fitted, const FlightView& flight, Progress& progress) {
+  std::vector<CoefficientModel> models;
+  for (const auto& [result, fit] : fitted)
+    if (fit.chosen && !result.per_unit_inertia) models.push_back(fit.model);
+  return internal::fly_axes(models, flight, progress);
+}
+
 }  // namespace
 
 std::string unmodelled_text(double error_ratio, double unmodelled_share) {
@@ -261,9 +288,9 @@ std::string unmodelled_text(double error_ratio, double unmodelled_share) {
       100.0 * unmodelled_share, times);
 }
 
-std::vector<CoefficientResult> identify_coefficients(std::span<const PreparedFlight> flights, const Subject& subject,
-                                                     const IdentifyOptions& options, Progress& progress) {
-  std::vector<CoefficientResult> results;
+Identification identify_coefficients(std::span<const PreparedFlight> flights, const Subject& subject,
+                                     const IdentifyOptions& options, Progress& progress) {
+  std::vector<FittedCoefficient> fitted;
   const FlightView flight{flights, subject, options};
   progress.stage("identifying coefficients");
   std::size_t done = 0;
@@ -272,10 +299,19 @@ std::vector<CoefficientResult> identify_coefficients(std::span<const PreparedFli
     const CoefficientModel* model = subject.model.find(c);
     const auto& some = options.coefficients;
     if (model == nullptr || (!some.empty() && std::find(some.begin(), some.end(), c) == some.end())) continue;
-    results.push_back(identify_coefficient(*model, flight));
+    fitted.push_back(fit_terms(*model, flight));
     if (!progress.update(static_cast<double>(done) / static_cast<double>(kCoefficients))) break;
   }
-  return results;
+  std::optional<ChosenOutputError> flown;
+  if (options.choose_output_error) {
+    progress.stage("output error");
+    flown = fly_axes(fitted, flight, progress);
+  }
+  Identification found;
+  for (FittedCoefficient& one : fitted)
+    found.coefficients.push_back(judged(std::move(one), flight, flown ? &*flown : nullptr));
+  if (flown) found.output_error = std::move(flown->identification);
+  return found;
 }
 
 }  // namespace veridyn::aircraft

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "veridyn/aircraft/identification/axis_output_error.hpp"
 #include "veridyn/aircraft/identification/prepared_flight.hpp"
 #include "veridyn/aircraft/model/subject.hpp"
 #include "veridyn/core/progress.hpp"
@@ -22,11 +23,13 @@ namespace veridyn::aircraft {
 /// What identification may do and what it demands of its result. Study table `[identify]`.
 struct IdentifyOptions {
   std::vector<Coefficient> coefficients;  ///< `coefficients = ["CL", "Cm"]`; empty: all that the subject models
-  /// `method`: "auto" (nothing) takes what the comparison recommends; "OLS", "TLS", "GTLS", "PCA-GTLS" fixes it.
+  /// `method`: "auto" (nothing) takes the regression that the comparison recommends; "OLS", "TLS", "GTLS", "PCA-GTLS"
+  /// fixes it.
   std::optional<estimation::Method> method = {};
-  bool refit_significant = false;  ///< `refit_significant`: drop what fails its t-test and estimate once more
-  double signal_to_noise = 1.0;    ///< `signal_to_noise`: S/n of the excitation threshold, 1 to 10
-  double significance = 0.05;      ///< `significance`: level of the t-tests
+  bool choose_output_error = false;  ///< `method = "output error"`: started at the regression, its estimate is taken
+  bool refit_significant = false;    ///< `refit_significant`: drop what fails its t-test and estimate once more
+  double signal_to_noise = 1.0;      ///< `signal_to_noise`: S/n of the excitation threshold, 1 to 10
+  double significance = 0.05;        ///< `significance`: level of the t-tests
   /// `min_holdout_r2`: a coefficient that explains less of the hold-out's variance is rejected.
   double min_holdout_r2 = 0.3;
   /// `max_unmodelled`: largest share of the coefficient's variance that may be neither modelled nor noise of the
@@ -53,6 +56,11 @@ struct IdentifyOptions {
 
   /// @throws InputError for values that make no sense.
   [[nodiscard]] static IdentifyOptions read(const StudyTable& table);
+
+  /// Whether the user chose the method.
+  [[nodiscard]] bool method_fixed() const { return method.has_value() || choose_output_error; }
+  /// `method` as the study has it.
+  [[nodiscard]] std::string method_name() const;
 };
 
 /// How well a coefficient is predicted in one of several flights.
@@ -79,6 +87,9 @@ struct CoefficientResult {
   estimation::RegressionData data;              ///< identification rows, for further analysis
   estimation::RegressionComparison comparison;  ///< OLS, TLS, GTLS, PCA-GTLS on the same rows
   std::optional<estimation::RegressionEstimate> chosen;
+  std::string method;  ///< that gave `chosen`: "GTLS", or "output error"
+  /// Where that is output error: factors on the standard deviations of its run, see make_estimate; else empty.
+  Eigen::VectorXd output_error_widening;
   /// Of several flights: how much the parameters differ between them. Where they do, `chosen` is their mean, with error
   /// bars from the scatter.
   std::optional<estimation::GroupScatter> scatter;
@@ -106,12 +117,19 @@ struct CoefficientResult {
   estimation::Judgement judgement;                     ///< of these; what was not estimated is not judged
 };
 
+/// What identification found.
+struct Identification {
+  std::vector<CoefficientResult> coefficients;
+  std::vector<AxisOutputError> output_error;  ///< of both axes, where that is the chosen method
+};
+
 /// Estimates every coefficient of `subject.model` on its axis's segments of all flights together. Regressor errors are
 /// propagated from the signals' noise by automatic differentiation; the variance of z that they leave unexplained is
-/// equation error. The checks of the recordings bear on the coefficients too.
-[[nodiscard]] std::vector<CoefficientResult> identify_coefficients(std::span<const PreparedFlight> flights,
-                                                                   const Subject& subject,
-                                                                   const IdentifyOptions& options, Progress& progress);
+/// equation error. The checks of the recordings bear on the coefficients too. With `choose_output_error` the estimates
+/// of output error are taken and judged in place of the regressions that they start from; what mass, geometry, inertia
+/// and air data leave in doubt is then still found by regression.
+[[nodiscard]] Identification identify_coefficients(std::span<const PreparedFlight> flights, const Subject& subject,
+                                                   const IdentifyOptions& options, Progress& progress);
 
 /// Why a coefficient is rejected whose residual is more than the sensors' noise: one clause, without its name. The
 /// arguments are those of CoefficientResult.
@@ -154,7 +172,10 @@ struct CoefficientResult {
                                                                const Subject& subject, const IdentifyOptions& options,
                                                                const estimation::Estimate& estimate);
 
-/// The parameters of all coefficients, for estimate.json.
-[[nodiscard]] estimation::Estimate make_estimate(const Subject& subject, std::span<const CoefficientResult> results);
+/// The parameters of all coefficients, for estimate.json. Regressed coefficients share the errors of mass, geometry and
+/// inertia; those of one axis by output error those of their run too.
+/// @param runs  of output error, where that is the chosen method
+[[nodiscard]] estimation::Estimate make_estimate(const Subject& subject, std::span<const CoefficientResult> results,
+                                                 std::span<const AxisOutputError> runs = {});
 
 }  // namespace veridyn::aircraft

@@ -33,7 +33,34 @@ Subject identified_subject(const Subject& subject, std::span<const CoefficientRe
   return identified;
 }
 
-estimation::Estimate make_estimate(const Subject& subject, std::span<const CoefficientResult> results) {
+namespace {
+
+/// Covariance of the parameters of two coefficients that one run of output error gave together, as their error bars
+/// were widened since; 0 where they are of different runs.
+Eigen::MatrixXd shared_run(const CoefficientResult& a, const CoefficientResult& b,
+                           std::span<const AxisOutputError> runs) {
+  Eigen::MatrixXd cross = Eigen::MatrixXd::Zero(a.chosen->theta.size(), b.chosen->theta.size());
+  if (a.axis != b.axis || a.output_error_widening.size() == 0 || b.output_error_widening.size() == 0) return cross;
+  const auto run = std::ranges::find(runs, a.axis, &AxisOutputError::axis);
+  if (run == runs.end()) return cross;
+  const auto place = [&](const std::string& name) {
+    return std::ranges::find(run->estimate.parameters, name, &estimation::Parameter::name) -
+           run->estimate.parameters.begin();
+  };
+  for (Eigen::Index i = 0; i < cross.rows(); ++i) {
+    const Eigen::Index of_a = place(a.chosen->parameters[i].name);
+    for (Eigen::Index j = 0; j < cross.cols(); ++j) {
+      const double factor = a.output_error_widening(i) * b.output_error_widening(j);
+      if (factor > 0.0) cross(i, j) = factor * run->estimate.covariance(of_a, place(b.chosen->parameters[j].name));
+    }
+  }
+  return cross;
+}
+
+}  // namespace
+
+estimation::Estimate make_estimate(const Subject& subject, std::span<const CoefficientResult> results,
+                                   std::span<const AxisOutputError> runs) {
   estimation::Estimate estimate;
   estimate.subject = subject.name;
   std::vector<std::string> methods;
@@ -45,7 +72,7 @@ estimation::Estimate make_estimate(const Subject& subject, std::span<const Coeff
     if (listed(result)) total += static_cast<Eigen::Index>(result.model.size());
   }
   estimate.covariance = Eigen::MatrixXd::Zero(total, total);
-  std::vector<std::pair<Eigen::Index, Eigen::MatrixXd>> shared;
+  std::vector<std::pair<Eigen::Index, const CoefficientResult*>> shared;
   Eigen::Index at = 0;
   for (const CoefficientResult& result : results) {
     const std::string& name = result.name;
@@ -70,13 +97,14 @@ estimation::Estimate make_estimate(const Subject& subject, std::span<const Coeff
     }
     estimate.covariance.block(at, at, chosen.theta.size(), chosen.theta.size()) = chosen.covariance;
     // Coefficients are estimated separately, but share the errors of mass, geometry and inertia.
-    shared.push_back({at, result.body_sensitivity});
-    for (const auto& [other, G] : shared) {
-      if (other == at || G.size() == 0 || result.body_sensitivity.size() == 0) continue;
-      const Eigen::MatrixXd cross = result.body_sensitivity * G.transpose();
+    for (const auto& [other, earlier] : shared) {
+      const Eigen::MatrixXd& G = earlier->body_sensitivity;
+      Eigen::MatrixXd cross = shared_run(result, *earlier, runs);
+      if (G.size() > 0 && result.body_sensitivity.size() > 0) cross += result.body_sensitivity * G.transpose();
       estimate.covariance.block(at, other, cross.rows(), cross.cols()) = cross;
       estimate.covariance.block(other, at, cross.cols(), cross.rows()) = cross.transpose();
     }
+    shared.emplace_back(at, &result);
     at += chosen.theta.size();
     for (Eigen::Index i = 0; i < result.air_data_doubt.size(); ++i)
       estimate.fit[chosen.parameters[i].name + ".air_data_doubt"] = result.air_data_doubt(i);
@@ -85,8 +113,7 @@ estimation::Estimate make_estimate(const Subject& subject, std::span<const Coeff
     estimate.fit[name + ".samples"] = static_cast<double>(chosen.rows);
     estimate.fit[name + ".error_ratio"] = result.error_ratio;
     estimate.fit[name + ".unmodelled_share"] = result.unmodelled_share;
-    const std::string method(estimation::to_string(chosen.method));
-    if (std::find(methods.begin(), methods.end(), method) == methods.end()) methods.push_back(method);
+    if (std::ranges::find(methods, result.method) == methods.end()) methods.push_back(result.method);
     if (result.holdout_fit.count > 0) {
       estimate.validation[name] = {result.holdout_fit.mae, result.holdout_fit.rmse, result.holdout_fit.r2,
                                    result.holdout_fit.theil, "1"};

@@ -11,16 +11,18 @@ namespace {
 using estimation::Method;
 using estimation::StructureMethod;
 
-/// Nothing for "auto".
-std::optional<Method> read_method(const StudyTable& table) {
+/// What `method` may be besides a regression.
+constexpr const char* kOutputError = "output error";
+
+void read_method(const StudyTable& table, IdentifyOptions& options) {
   constexpr std::array kMethods{Method::kOls, Method::kTls, Method::kGtls, Method::kPcaGtls};
   std::vector<std::string> choices{"auto"};
   for (const Method method : kMethods) choices.emplace_back(estimation::to_string(method));
+  choices.emplace_back(kOutputError);
   const std::string chosen = table.choice_or("method", choices, "auto");
-  for (const Method method : kMethods) {
-    if (estimation::to_string(method) == chosen) return method;
-  }
-  return std::nullopt;
+  for (const Method method : kMethods)
+    if (estimation::to_string(method) == chosen) options.method = method;
+  options.choose_output_error = chosen == kOutputError;
 }
 
 /// Nothing for "given".
@@ -32,6 +34,11 @@ std::optional<StructureMethod> read_structure(const StudyTable& table) {
 }
 
 }  // namespace
+
+std::string IdentifyOptions::method_name() const {
+  if (choose_output_error) return kOutputError;
+  return method ? std::string(estimation::to_string(*method)) : "auto";
+}
 
 IdentifyOptions IdentifyOptions::read(const StudyTable& table) {
   IdentifyOptions options;
@@ -48,7 +55,7 @@ IdentifyOptions IdentifyOptions::read(const StudyTable& table) {
         "profiles",
         "is for studies of vehicles and muscles: an aircraft's parameters come from linear regressions, of which "
         "the profile likelihood is a parabola and gives the interval of the error bar again");
-  options.method = read_method(table);
+  read_method(table, options);
   options.refit_significant = table.flag_or("refit_significant", options.refit_significant);
   options.signal_to_noise = table.number_or("signal_to_noise", "1", options.signal_to_noise);
   if (!(options.signal_to_noise >= 1.0 && options.signal_to_noise <= 10.0)) {

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <iterator>
 
-#include "veridyn/aircraft/identification/output_error_model.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/regression/bootstrap.hpp"
 #include "veridyn/estimation/regression/frequency_domain.hpp"
@@ -39,74 +38,31 @@ OtherParameter compared(const CoefficientResult& result, const std::string& meth
   OtherParameter row;
   row.coefficient = result.coefficient;
   row.estimate = {method, p};
-  const Parameter* regression = result.chosen ? result.chosen->find(p.name) : nullptr;
-  row.normalised_difference =
-      regression != nullptr ? (p.value - regression->value) / std::hypot(p.sigma, regression->sigma) : kNaN;
+  const Parameter* chosen = result.chosen ? result.chosen->find(p.name) : nullptr;
+  row.normalised_difference = chosen != nullptr ? (p.value - chosen->value) / std::hypot(p.sigma, chosen->sigma) : kNaN;
   if (!std::isfinite(p.sigma)) row.normalised_difference = kNaN;
   return row;
 }
 
-/// A sentence naming the parameters whose value by `method` differs from regression by more than the errors allow;
+/// A sentence naming the parameters whose value by `method` differs from the chosen one by more than the errors allow;
 /// empty where there are none.
-std::string contradictions(std::span<const OtherParameter> parameters, const std::string& method) {
+std::string contradictions(std::span<const OtherParameter> parameters, const std::string& method,
+                           const std::string& chosen) {
   std::vector<std::string> names;
   for (const OtherParameter& row : parameters) {
     if (row.estimate.method == method && std::abs(row.normalised_difference) > kContradiction)
       names.push_back(fmt::format("{} ({:+.1f} sigma)", row.estimate.parameter.name, row.normalised_difference));
   }
-  return names.empty() ? "" : fmt::format("{} contradicts regression in {}", method, fmt::join(names, ", "));
+  return names.empty() ? "" : fmt::format("{} contradicts {} in {}", method, chosen, fmt::join(names, ", "));
 }
 
-/// The identification segments of the flights whose motion is known.
-std::vector<OutputErrorModel::FlownSpans> flown_spans(std::span<const PreparedFlight> flights, Axis axis,
-                                                      const IdentifyOptions& options) {
-  std::vector<OutputErrorModel::FlownSpans> flown;
-  for (const PreparedFlight& flight : flights) {
-    if (!flight.usable()) continue;
-    const bool gusts = options.output_error_gusts.value_or(flight.signals.over_ground);
-    flown.push_back({flight.signals, flight.segments.of(axis).identification, gusts, flight.name});
-  }
-  return flown;
-}
-
-AxisOutputError axis_output_error(Axis axis, std::span<const PreparedFlight> flights, const Subject& subject,
+AxisOutputError beside_regression(Axis axis, std::span<const PreparedFlight> flights, const Subject& subject,
                                   std::span<const CoefficientResult> results, const IdentifyOptions& options,
                                   Progress& progress) {
-  AxisOutputError run;
-  run.axis = axis;
   std::vector<CoefficientModel> models;
-  std::vector<std::string> names;
-  for (const CoefficientResult& r : results) {
-    if (r.axis != axis || !r.chosen) continue;
-    models.push_back(r.model);
-    run.coefficients.push_back(r.coefficient);
-    names.emplace_back(name_of(r.coefficient));
-  }
-  const std::string label = fmt::format("output error, {}", to_string(axis));
-  const std::vector<OutputErrorModel::FlownSpans> flown = flown_spans(flights, axis, options);
-  const OutputErrorModel model(flown, subject, models);
-  if (models.empty() || model.segments() == 0) {
-    run.text = fmt::format(
-        "{}: not tried, {}", label,
-        models.empty() ? "regression gave no coefficient to start from" : "no segment of at least 2 s has all signals");
-    return run;
-  }
-  run.attempted = true;
-  estimation::OutputErrorOptions o;
-  o.significance = options.significance;
-  o.max_relaxations = 40;
-  // Beyond a hundredth of an error bar, further digits are not worth simulating a long flight once more.
-  o.tolerance = 0.01;
-  if (options.output_error_biases) {
-    for (const estimation::ModelOutput& output : model.outputs()) {
-      // Only biases of the accelerometers: that of a freely integrated state is not distinguishable from its initial
-      // value.
-      if (output.name.starts_with("accel")) o.output_biases.push_back(output.name);
-    }
-  }
-  run.estimate = estimation::output_error(model, model.measured(), o, progress);
-  run.text = fmt::format("{} ({}): {}", label, fmt::join(names, ", "), run.estimate.message);
-  return run;
+  for (const CoefficientResult& r : results)
+    if (r.axis == axis && r.chosen && !r.per_unit_inertia) models.push_back(r.model);
+  return axis_output_error(axis, flights, RowUse::kIdentification, subject, std::move(models), options, progress);
 }
 
 std::vector<OtherParameter> output_error_parameters(const AxisOutputError& run,
@@ -118,6 +74,16 @@ std::vector<OtherParameter> output_error_parameters(const AxisOutputError& run,
       if (r.chosen && r.chosen->find(p.name) != nullptr) rows.push_back(compared(r, "output error", p));
     }
   }
+  return rows;
+}
+
+/// The regression that a coefficient by output error started from.
+std::vector<OtherParameter> started_from(const CoefficientResult& r) {
+  std::vector<OtherParameter> rows;
+  const RegressionEstimate* regression = r.chosen ? r.comparison.find(r.chosen->method) : nullptr;
+  if (regression == nullptr) return rows;
+  for (const Parameter& p : regression->parameters)
+    rows.push_back(compared(r, std::string(estimation::to_string(regression->method)), p));
   return rows;
 }
 
@@ -169,17 +135,22 @@ MethodOutcome by_bootstrap(const CoefficientResult& r, const IdentifyOptions& op
 }  // namespace
 
 OtherEstimators compare_other_estimators(std::span<const PreparedFlight> flights, const Subject& subject,
-                                         std::span<const CoefficientResult> results, const IdentifyOptions& options,
+                                         const Identification& found, const IdentifyOptions& options,
                                          Progress& progress) {
+  const std::vector<CoefficientResult>& results = found.coefficients;
   OtherEstimators others;
   const auto add = [&](std::vector<OtherParameter> parameters, std::string note) {
     std::move(parameters.begin(), parameters.end(), std::back_inserter(others.parameters));
-    others.notes.push_back(std::move(note));
+    if (!note.empty()) others.notes.push_back(std::move(note));
   };
-  if (options.output_error) {
+  if (options.choose_output_error) {
+    others.output_error = found.output_error;
+    for (const CoefficientResult& r : results) add(started_from(r), "");
+    for (const AxisOutputError& run : others.output_error) others.notes.push_back(run.text);
+  } else if (options.output_error) {
     progress.stage("output error");
     for (const Axis axis : {Axis::kLongitudinal, Axis::kLateral}) {
-      AxisOutputError run = axis_output_error(axis, flights, subject, results, options, progress);
+      AxisOutputError run = beside_regression(axis, flights, subject, results, options, progress);
       add(output_error_parameters(run, results), run.text);
       others.output_error.push_back(std::move(run));
     }
@@ -199,8 +170,9 @@ OtherEstimators compare_other_estimators(std::span<const PreparedFlight> flights
       add(std::move(outcome.parameters), std::move(outcome.note));
     }
   }
+  const std::string reference = options.choose_output_error ? "output error" : "regression";
   for (const char* method : {"output error", "frequency domain"}) {
-    std::string text = contradictions(others.parameters, method);
+    std::string text = contradictions(others.parameters, method, reference);
     if (!text.empty()) others.notes.push_back(std::move(text));
   }
   return others;

@@ -30,11 +30,19 @@ ParameterGroup group_of(const CoefficientResult& result, const OtherEstimators& 
   for (const estimation::RegressionEstimate& e : result.comparison.estimates)
     group.methods.push_back({std::string(to_string(e.method)), e.usable(), e.message, e.parameters});
   if (result.chosen) {
-    group.method = to_string(result.chosen->method);
+    group.method = result.method;
     group.parameters = result.chosen->parameters;
   }
+  const bool by_output_error = result.output_error_widening.size() > 0;
+  for (const AxisOutputError& run : others.output_error) {
+    if (!by_output_error || run.axis != result.axis) continue;
+    for (const Parameter& p : run.estimate.parameters)
+      if (result.chosen->find(p.name) != nullptr) method_of(group, result.method).parameters.push_back(p);
+  }
   for (const OtherParameter& other : others.parameters) {
-    if (other.coefficient == result.coefficient)
+    // The regression that it started from is there already.
+    const bool listed = by_output_error && to_string(result.chosen->method) == other.estimate.method;
+    if (other.coefficient == result.coefficient && !listed)
       method_of(group, other.estimate.method).parameters.push_back(other.estimate.parameter);
   }
   return group;

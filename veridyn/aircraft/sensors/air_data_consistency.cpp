@@ -28,7 +28,7 @@ constexpr double kDeterminedScale = 0.05;
 constexpr Eigen::Index kLongestLag = 60;
 
 /// Means over half a second; NaN where a channel has a hole.
-struct FlightRows {
+struct AirDataRows {
   std::vector<int> segment;
   std::vector<Vector3> velocity, attitude;
   std::vector<double> airspeed, alpha, beta;
@@ -55,8 +55,8 @@ std::vector<double> airspeed_on(const Recording& recording, const Channel& air_d
   return speed;
 }
 
-FlightRows rows_of(const Recording& recording, const Channel& air_density, bool airspeed_is_true,
-                   std::span<const TimeSpan> spans) {
+AirDataRows rows_of(const Recording& recording, const Channel& air_density, bool airspeed_is_true,
+                    std::span<const TimeSpan> spans) {
   const Channel& clock = recording.at("roll");
   const double rate = recording::grid_rate(clock);
   const numerics::UniformGrid grid = recording::grid_over(clock, rate, recording.source);
@@ -69,7 +69,7 @@ FlightRows rows_of(const Recording& recording, const Channel& air_density, bool 
   const std::vector<double> airspeed = airspeed_on(recording, air_density, airspeed_is_true, grid),
                             alpha = channel_on(recording, "alpha", grid), beta = channel_on(recording, "beta", grid);
   const auto block = static_cast<std::size_t>(std::max(1.0, std::round(kRowInterval_s * rate)));
-  FlightRows rows;
+  AirDataRows rows;
   int segment = 0;
   for (const TimeSpan& span : spans) {
     const auto [begin, end] = recording::grid_indices(grid, span);
@@ -117,7 +117,7 @@ double level_airspeed(double airspeed, double down) {
 
 /// Scale of the airspeed and mean wind together; nothing else is set. The ground velocity drifts with slow gusts, the
 /// heading does not: it is the instrument.
-AirDataConsistency scale_and_wind(const FlightRows& rows) {
+AirDataConsistency scale_and_wind(const AirDataRows& rows) {
   AirDataConsistency out;
   const auto n = signed_index(rows.size());
   RegressionData data;
@@ -153,7 +153,7 @@ AirDataConsistency scale_and_wind(const FlightRows& rows) {
 
 /// Ground velocity less airspeed along the heading, averaged over half a minute: a steady wind and slow gusts. Sideslip
 /// is taken to average out.
-std::vector<Vector3> local_wind(const FlightRows& rows, double scale) {
+std::vector<Vector3> local_wind(const AirDataRows& rows, double scale) {
   const auto half = static_cast<std::size_t>(kLocalWind_s / (2.0 * kRowInterval_s));
   std::vector<Vector3> difference(rows.size()), wind(rows.size(), Vector3::Constant(kNaN));
   for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -194,7 +194,7 @@ Determined mean_of(const std::vector<double>& values, const std::vector<int>& se
 }
 
 /// The vane against the inertial angle in the mean.
-std::optional<VaneFit> fit_vane(const FlightRows& rows, const std::vector<double>& reading,
+std::optional<VaneFit> fit_vane(const AirDataRows& rows, const std::vector<double>& reading,
                                 const std::vector<double>& inertial) {
   std::vector<double> sizes, difference(rows.size());
   for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -337,7 +337,7 @@ AirDataConsistency air_data_consistency(const Recording& recording, const Channe
                                         std::span<const TimeSpan> airborne) {
   for (const char* name : {"roll", "pitch", "yaw", "vel_north", "vel_east", "vel_down"})
     if (!recording.has(name) || recording.at(name).size() < 2) return {};
-  const FlightRows rows = rows_of(recording, air_density, airspeed_is_true, airborne);
+  const AirDataRows rows = rows_of(recording, air_density, airspeed_is_true, airborne);
   if (rows.size() < kFewestRows) return {};
   AirDataConsistency out = scale_and_wind(rows);
   if (!out.airspeed_scale) return out;

@@ -42,10 +42,8 @@ Table comparison_table(const FlightAnalysis& analysis) {
   for (const CoefficientResult& r : analysis.coefficients) {
     if (!r.chosen) continue;
     for (const auto& p : r.chosen->parameters) {
-      table.rows.push_back(
-          estimate_row({text_cell(p.name), text_cell(std::string(estimation::to_string(r.chosen->method))),
-                        status_cell(status_of(p.status))},
-                       p, number_cell(kNaN)));
+      table.rows.push_back(estimate_row({text_cell(p.name), text_cell(r.method), status_cell(status_of(p.status))}, p,
+                                        number_cell(kNaN)));
       for (const OtherParameter& other : analysis.others.parameters) {
         const auto& [method, e] = other.estimate;
         if (e.name != p.name) continue;
@@ -101,8 +99,7 @@ Section coefficients_section(const FlightAnalysis& analysis) {
     const bool has = r.chosen.has_value();
     table.rows.push_back({.cells = {text_cell(fmt::format("{} {}", r.name, meaning_of(r.coefficient))),
                                     status_cell(status_of(r.verdict), std::string(to_string(r.verdict))),
-                                    text_cell(has ? std::string(estimation::to_string(r.chosen->method)) : ""),
-                                    number_cell(has ? 100.0 * r.identification_fit.r2 : kNaN, 1),
+                                    text_cell(r.method), number_cell(has ? 100.0 * r.identification_fit.r2 : kNaN, 1),
                                     number_cell(r.holdout_fit.count > 0 ? 100.0 * r.holdout_fit.r2 : kNaN, 1),
                                     number_cell(r.holdout_fit.count > 0 ? r.holdout_fit.theil : kNaN, 3),
                                     number_cell(has ? r.error_ratio : kNaN)},
@@ -121,7 +118,7 @@ Section other_estimators_section(const FlightAnalysis& analysis) {
   if (others.empty()) return section;
   section.blocks.emplace_back(Paragraph{
       "The same parameters on the same identification segments by other principles. Apart: difference to the "
-      "recommended regression in units of the two standard errors together; both use the same data, so more than 3 is "
+      "chosen method in units of the two standard errors together; both use the same data, so more than 3 is "
       "a "
       "contradiction and less than 1 is common. Output error knows turbulence only as far as the reconstruction found "
       "the gust; the frequency domain is biased by noise of the regressors as ordinary least squares is."});
