@@ -1,5 +1,6 @@
 #include "tests/apps/program.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -141,6 +142,31 @@ TEST_F(Program, GoesFromASimulatedFlightToAValidatedModel) {
           " --json --quiet --out " + (folder_ / "other").string());
   EXPECT_EQ(validated.exit_code, 0) << validated.text;
   EXPECT_THAT(validated.text, HasSubstr("\"Cm\": {\n      \"verdict\": \"identified\""));
+}
+
+TEST_F(Program, ExportsAndComparesWhatOutputErrorGives) {
+  const std::string study = (test::source_folder() / "examples/studies/output_error_flight.toml").string();
+  const std::string by_output_error = (folder_ / "output_error").string(),
+                    by_regression = (folder_ / "regression").string();
+  Outcome run_of = run("identify " + study + " --out " + by_output_error);
+  EXPECT_EQ(run_of.exit_code, 0) << run_of.text;
+  EXPECT_THAT(run_of.text, HasSubstr("CL is identified by output error"));
+  const auto json = nlohmann::json::parse(read_file(fs::path(by_output_error) / "estimate.json"));
+  EXPECT_EQ(json.at("method"), "output error");
+  const std::string subject = read_file(fs::path(by_output_error) / "subject.toml");
+  for (const auto& p : json.at("parameters")) {
+    if (p.at("name") == "CL_alpha") {
+      EXPECT_THAT(subject, HasSubstr(fmt::format("\"alpha\" = {}", p.at("value").get<double>())));
+    }
+  }
+  EXPECT_TRUE(fs::exists(fs::path(by_output_error) / "jsbsim.xml"));
+  run_of = run("identify " + study + " --set identify.method=auto --out " + by_regression);
+  EXPECT_EQ(run_of.exit_code, 0) << run_of.text;
+  run_of = run("compare " + by_output_error + " " + by_regression + out());
+  EXPECT_EQ(run_of.exit_code, 0) << run_of.text;
+  const auto compared = nlohmann::json::parse(read_file(folder_ / "out" / "comparison.json"));
+  EXPECT_EQ(compared.at("pairs").at(0).at("parameters"), 32);
+  EXPECT_GT(compared.at("pairs").at(0).at("p").get<double>(), 0.05);
 }
 
 TEST_F(Program, ExportsABuiltInSubjectForOtherPrograms) {

@@ -1,10 +1,12 @@
 #include "veridyn/aircraft/identification/chosen_output_error.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "tests/aircraft/rescaled_subject.hpp"
 #include "veridyn/aircraft/aircraft_study.hpp"
 #include "veridyn/core/error.hpp"
 
@@ -134,7 +136,8 @@ TEST(ChosenOutputError, IsComparedWithTheRegressionThatItStartedFrom) {
 // Turbulence that the simulation does not have is taken for motion of the aircraft: nothing of that may be believed.
 TEST(ChosenOutputError, IsNoConstantWhereTheAirMovedAndTheSimulationDoesNotKnow) {
   Progress progress;
-  const FlightStudy study = study_of("low_moderate", "[identify]\nmethod = \"output error\"\noutput_error_gusts = false\n");
+  const FlightStudy study =
+      study_of("low_moderate", "[identify]\nmethod = \"output error\"\noutput_error_gusts = false\n");
   const FlightAnalysis a = identify(study, progress);
   int wrong = 0, believed = 0;
   for (const CoefficientResult& r : a.coefficients) {
@@ -148,7 +151,31 @@ TEST(ChosenOutputError, IsNoConstantWhereTheAirMovedAndTheSimulationDoesNotKnow)
                   p.status == estimation::ParameterStatus::kIdentified;
     }
   }
+  EXPECT_GT(wrong, 0) << "or there is nothing to see";
   EXPECT_EQ(believed, 0) << "of " << wrong << " wrong ones";
+}
+
+// By regression and by output error the numbers follow the reference lengths, and only they do.
+TEST(ChosenOutputError, FollowsTheReferenceLengthsAsRegressionDoes) {
+  const testing::LengthFactors by{.roll = 0.5, .pitch = 3.0, .yaw = 0.2};
+  Progress progress;
+  for (const char* method : {"auto", "output error"}) {
+    FlightStudy study = study_of("none", fmt::format("turbulence = \"none\"\n[identify]\nmethod = \"{}\"\n", method));
+    const FlightAnalysis usual = identify(study, progress);
+    study.subject = testing::with_lengths(study.subject, by);
+    const FlightAnalysis other = identify(study, progress);
+    ASSERT_EQ(other.estimate.parameters.size(), usual.estimate.parameters.size());
+    for (const CoefficientResult& r : usual.coefficients) {
+      for (const Term& term : r.model.terms) {
+        const std::string name = parameter_name(r.coefficient, term);
+        const estimation::Parameter *a = usual.estimate.find(name), *b = other.estimate.find(name);
+        const double factor = by.on(r.coefficient, term);
+        // Output error ends within a hundredth of an error bar of its optimum.
+        EXPECT_NEAR(b->value, factor * a->value, 0.02 * factor * a->sigma) << method << ' ' << name;
+        EXPECT_NEAR(b->sigma, factor * a->sigma, 0.02 * factor * a->sigma) << method << ' ' << name;
+      }
+    }
+  }
 }
 
 TEST(ChosenOutputError, IsAMethodOfTheStudyAmongOthers) {

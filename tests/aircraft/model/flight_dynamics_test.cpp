@@ -2,6 +2,7 @@
 
 #include <ceres/jet.h>
 
+#include "tests/aircraft/rescaled_subject.hpp"
 #include "veridyn/aircraft/model/atmosphere.hpp"
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
 #include "veridyn/aircraft/model/wind_axes.hpp"
@@ -56,6 +57,24 @@ TEST(FlightDynamics, TheWindAxesEquationsAgreeWithTheBodyAxesDynamics) {
     EXPECT_NEAR(rate.alpha, expected.alpha.v[0], 1e-12);
     EXPECT_NEAR(rate.beta, expected.beta.v[0], 1e-12);
     EXPECT_GT(in.thrust, 1.0);  // without thrust the sign of its term in beta' would go unnoticed
+  }
+}
+
+// A reference length is a definition: with numbers that belong to it, forces and moments are the same.
+TEST(FlightDynamics, ReferenceLengthsOfEachAxisAreDefinitions) {
+  RandomStream random(4, "lengths");
+  for (const std::string& name : builtin_subject_names()) {
+    const Subject s = builtin_subject(name);
+    const Subject other = testing::with_lengths(s, {.roll = 0.5, .pitch = 3.0, .yaw = 0.2});
+    ASSERT_NE(other.model, s.model);
+    for (int i = 0; i < 20; ++i) {
+      const Vector3d v = air_velocity(random.uniform(12, 30), random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2));
+      const Vector3d omega(random.normal(), random.normal(), random.normal());
+      const AeroLoads<double> a = aero_loads<double>(s, v, omega, some_controls(), 1.2);
+      const AeroLoads<double> b = aero_loads<double>(other, v, omega, some_controls(), 1.2);
+      EXPECT_LT((a.force - b.force).norm(), 1e-12 * (1.0 + a.force.norm())) << name;
+      EXPECT_LT((a.moment - b.moment).norm(), 1e-12 * (1.0 + a.moment.norm())) << name;
+    }
   }
 }
 

@@ -50,6 +50,18 @@ TEST(Subject, OverridesValuesOfABuiltInOne) {
   EXPECT_DOUBLE_EQ(s.propulsion.position[2], 0.1);
 }
 
+TEST(Subject, HasReferenceLengthsOfItsOwnForEachAxis) {
+  const Subject s = parsed_subject(std::string(kGeometry) + "reference_lengths = { roll = \"94 cm\", yaw = 0.6 }\n");
+  EXPECT_DOUBLE_EQ(s.roll_length(), 0.94);
+  EXPECT_DOUBLE_EQ(s.pitch_length(), 0.24) << "the chord where it is not given";
+  EXPECT_DOUBLE_EQ(s.yaw_length(), 0.6);
+  EXPECT_DOUBLE_EQ(s.span, 1.88) << "still the wing's";
+  EXPECT_TRUE(parsed_subject(write_subject_toml(s)) == s) << write_subject_toml(s);
+  EXPECT_FALSE(parsed_subject(kGeometry) == s);
+  EXPECT_THAT(message(std::string(kGeometry) + "reference_lengths = { pitch = -0.1 }\n"), HasSubstr("must be > 0"));
+  EXPECT_THAT(message(std::string(kGeometry) + "reference_lengths = { jaw = 0.1 }\n"), HasSubstr("yaw"));
+}
+
 TEST(Subject, WithoutInertiaIsASubjectWithoutMoments) {
   const Subject s = parsed_subject(kGeometry);
   EXPECT_FALSE(s.inertia.has_value());

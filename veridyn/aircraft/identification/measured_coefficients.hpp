@@ -54,9 +54,9 @@ template <typename Scalar>
   const Scalar& Va = s[F::kAirspeed];
   v.alpha = s[F::kAlpha];
   v.beta = s[F::kBeta];
-  v.p_n = s[F::kP] * Scalar(0.5 * subject.span) / Va;
-  v.q_n = s[F::kQ] * Scalar(0.5 * subject.chord) / Va;
-  v.r_n = s[F::kR] * Scalar(0.5 * subject.span) / Va;
+  v.p_n = s[F::kP] * Scalar(0.5 * subject.roll_length()) / Va;
+  v.q_n = s[F::kQ] * Scalar(0.5 * subject.pitch_length()) / Va;
+  v.r_n = s[F::kR] * Scalar(0.5 * subject.yaw_length()) / Va;
   v.de = s[F::kElevator];
   v.da = s[F::kAileron];
   v.dr = s[F::kRudder];
@@ -126,9 +126,13 @@ template <typename Scalar>
   l -= Scalar(f[1]) * Fz - Scalar(f[2]) * Fy;
   m -= Scalar(f[2]) * Fx - Scalar(f[0]) * Fz;
   n -= Scalar(f[0]) * Fy - Scalar(f[1]) * Fx;
-  c.Cl = l / (qS * body[B::kSpan]);
-  c.Cm = m / (qS * body[B::kChord]);
-  c.Cn = n / (qS * body[B::kSpan]);
+  // Lengths by definition have no error; span and chord may.
+  const auto length = [](const std::optional<double>& given, const Scalar& measured) {
+    return given ? Scalar(*given) : measured;
+  };
+  c.Cl = l / (qS * length(subject.lengths.roll, body[B::kSpan]));
+  c.Cm = m / (qS * length(subject.lengths.pitch, body[B::kChord]));
+  c.Cn = n / (qS * length(subject.lengths.yaw, body[B::kSpan]));
   return c;
 }
 
@@ -151,9 +155,9 @@ template <typename Scalar>
   using F = FlightSignal;
   AeroCoefficients<Scalar> c = measured_coefficients(s, subject, rho);
   const Scalar qS = Scalar(0.5 * rho * subject.wing_area) * s[F::kAirspeed] * s[F::kAirspeed];
-  c.Cl = (s[F::kPdot] + s[F::kQ] * s[F::kR]) / (qS * Scalar(subject.span));
-  c.Cm = (s[F::kQdot] - s[F::kP] * s[F::kR]) / (qS * Scalar(subject.chord));
-  c.Cn = s[F::kRdot] / (qS * Scalar(subject.span));
+  c.Cl = (s[F::kPdot] + s[F::kQ] * s[F::kR]) / (qS * Scalar(subject.roll_length()));
+  c.Cm = (s[F::kQdot] - s[F::kP] * s[F::kR]) / (qS * Scalar(subject.pitch_length()));
+  c.Cn = s[F::kRdot] / (qS * Scalar(subject.yaw_length()));
   return c;
 }
 

@@ -182,9 +182,9 @@ OutputErrorModel::Rates<Scalar> OutputErrorModel::rates(State<Scalar> x, const G
   AeroVariables<Scalar> v;
   v.alpha = alpha;
   v.beta = beta;
-  v.p_n = p * Scalar(0.5 * subject_.span) / Va;
-  v.q_n = q * Scalar(0.5 * subject_.chord) / Va;
-  v.r_n = r * Scalar(0.5 * subject_.span) / Va;
+  v.p_n = p * Scalar(0.5 * subject_.roll_length()) / Va;
+  v.q_n = q * Scalar(0.5 * subject_.pitch_length()) / Va;
+  v.r_n = r * Scalar(0.5 * subject_.yaw_length()) / Va;
   v.de = Scalar(inputs.de);
   v.da = Scalar(inputs.da);
   v.dr = Scalar(inputs.dr);
@@ -231,13 +231,12 @@ OutputErrorModel::Rates<Scalar> OutputErrorModel::rates(State<Scalar> x, const G
     const Inertia& J = *subject_.inertia;
     const auto& f = subject_.force_point;
     const auto& e = subject_.propulsion.position;
-    const Scalar b(subject_.span), c(subject_.chord);
-    const Scalar l =
-        qS * b * value(Coefficient::kCl) + Scalar(inputs.torque) + Scalar(f[1]) * aero[2] - Scalar(f[2]) * aero[1];
-    const Scalar M =
-        qS * c * value(Coefficient::kCm) + Scalar(f[2]) * aero[0] - Scalar(f[0]) * aero[2] + Scalar(e[2]) * T;
-    const Scalar n =
-        qS * b * value(Coefficient::kCn) + Scalar(f[0]) * aero[1] - Scalar(f[1]) * aero[0] - Scalar(e[1]) * T;
+    const Scalar l = qS * Scalar(subject_.roll_length()) * value(Coefficient::kCl) + Scalar(inputs.torque) +
+                     Scalar(f[1]) * aero[2] - Scalar(f[2]) * aero[1];
+    const Scalar M = qS * Scalar(subject_.pitch_length()) * value(Coefficient::kCm) + Scalar(f[2]) * aero[0] -
+                     Scalar(f[0]) * aero[2] + Scalar(e[2]) * T;
+    const Scalar n = qS * Scalar(subject_.yaw_length()) * value(Coefficient::kCn) + Scalar(f[0]) * aero[1] -
+                     Scalar(f[1]) * aero[0] - Scalar(e[1]) * T;
     // J omega' = M - omega x (J omega).
     const Scalar hx = Scalar(J.Jx) * p - Scalar(J.Jxz) * r, hy = Scalar(J.Jy) * q,
                  hz = Scalar(J.Jz) * r - Scalar(J.Jxz) * p;

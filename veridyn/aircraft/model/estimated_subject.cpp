@@ -77,6 +77,7 @@ std::string to_json(const Subject& s, const estimation::Estimate* estimate) {
   json["wing_area_m2"] = s.wing_area;
   json["span_m"] = s.span;
   json["chord_m"] = s.chord;
+  json["reference_lengths_m"] = {{"roll", s.roll_length()}, {"pitch", s.pitch_length()}, {"yaw", s.yaw_length()}};
   if (s.inertia) {
     json["inertia_kgm2"] = {
         {"Jx", s.inertia->Jx}, {"Jy", s.inertia->Jy}, {"Jz", s.inertia->Jz}, {"Jxz", s.inertia->Jxz}};

@@ -48,9 +48,9 @@ template <typename Scalar>
   AeroVariables<Scalar>& v = out.variables;
   v.alpha = out.air.alpha;
   v.beta = out.air.beta;
-  v.p_n = Scalar(0.5 * s.span) * omega(0) / Vn;
-  v.q_n = Scalar(0.5 * s.chord) * omega(1) / Vn;
-  v.r_n = Scalar(0.5 * s.span) * omega(2) / Vn;
+  v.p_n = Scalar(0.5 * s.roll_length()) * omega(0) / Vn;
+  v.q_n = Scalar(0.5 * s.pitch_length()) * omega(1) / Vn;
+  v.r_n = Scalar(0.5 * s.yaw_length()) * omega(2) / Vn;
   v.de = controls.de;
   v.da = controls.da;
   v.dr = controls.dr;
@@ -67,8 +67,8 @@ template <typename Scalar>
                       Scalar(s.propulsion.position[2]));
   const Vector thrust(out.propulsion.thrust, Scalar(0.0), Scalar(0.0));
   out.force = aero + thrust;
-  out.moment = Vector(qS * Scalar(s.span) * c.Cl + out.propulsion.torque, qS * Scalar(s.chord) * c.Cm,
-                      qS * Scalar(s.span) * c.Cn) +
+  out.moment = Vector(qS * Scalar(s.roll_length()) * c.Cl + out.propulsion.torque, qS * Scalar(s.pitch_length()) * c.Cm,
+                      qS * Scalar(s.yaw_length()) * c.Cn) +
                arm.cross(aero) + engine.cross(thrust);
   return out;
 }

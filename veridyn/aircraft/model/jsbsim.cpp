@@ -165,16 +165,32 @@ Expression with_stall(const CoefficientModel& model, const std::optional<StallBl
 }
 
 /// b p / (2 Va) with Va not below 0.1 m/s, as in `aero_loads`.
-Expression normalised_rate(const char* length, const char* rate) {
-  return quotient(product({property(length), property(rate)}),
+Expression normalised_rate(const Expression& length, const char* rate) {
+  return quotient(product({length, property(rate)}),
                   product({value(2.0), operation("max", {property("velocities/vt-fps"), value(0.1 / kFoot)})}));
+}
+
+/// What makes moments and rates dimensionless [ft].
+struct MomentLengths {
+  Expression roll, pitch, yaw;
+};
+
+/// Span and chord of the file's metrics, or the subject's own reference lengths.
+MomentLengths moment_lengths(const Subject& s) {
+  const auto length = [](const std::optional<double>& own, const char* metric) {
+    return own ? value(*own / kFoot) : property(metric);
+  };
+  return {.roll = length(s.lengths.roll, "metrics/bw-ft"),
+          .pitch = length(s.lengths.pitch, "metrics/cbarw-ft"),
+          .yaw = length(s.lengths.yaw, "metrics/bw-ft")};
 }
 
 void write_aerodynamics(pugi::xml_node root, const Subject& s, const Expression& thrust_lbs) {
   pugi::xml_node aero = root.append_child("aerodynamics");
-  function(aero, "aero/function/p_n", "b p / (2 Va)", normalised_rate("metrics/bw-ft", "velocities/p-aero-rad_sec"));
-  function(aero, "aero/function/q_n", "c q / (2 Va)", normalised_rate("metrics/cbarw-ft", "velocities/q-aero-rad_sec"));
-  function(aero, "aero/function/r_n", "b r / (2 Va)", normalised_rate("metrics/bw-ft", "velocities/r-aero-rad_sec"));
+  const MomentLengths length = moment_lengths(s);
+  function(aero, "aero/function/p_n", "b p / (2 Va)", normalised_rate(length.roll, "velocities/p-aero-rad_sec"));
+  function(aero, "aero/function/q_n", "c q / (2 Va)", normalised_rate(length.pitch, "velocities/q-aero-rad_sec"));
+  function(aero, "aero/function/r_n", "b r / (2 Va)", normalised_rate(length.yaw, "velocities/r-aero-rad_sec"));
   function(aero, "aero/function/thrust-lbs", "along body x", thrust_lbs);
   const Expression slow_Va = operation("max", {property("velocities/vt-fps"), value(0.1 / kFoot)});
   function(aero, "aero/function/CT", "thrust / (qbar S)",
@@ -208,9 +224,9 @@ void write_aerodynamics(pugi::xml_node root, const Subject& s, const Expression&
   axis("Y", "qbar S CY", product({qS, coefficient(Coefficient::kCY)}));
   axis("Z", "-qbar S (CD sin alpha + CL cos alpha)",
        product({value(-1.0), qS, sum({product({CD, sa}), product({CL, ca})})}));
-  axis("ROLL", "qbar S b Cl", product({qS, property("metrics/bw-ft"), coefficient(Coefficient::kCl)}));
-  axis("PITCH", "qbar S c Cm", product({qS, property("metrics/cbarw-ft"), coefficient(Coefficient::kCm)}));
-  axis("YAW", "qbar S b Cn", product({qS, property("metrics/bw-ft"), coefficient(Coefficient::kCn)}));
+  axis("ROLL", "qbar S b Cl", product({qS, length.roll, coefficient(Coefficient::kCl)}));
+  axis("PITCH", "qbar S c Cm", product({qS, length.pitch, coefficient(Coefficient::kCm)}));
+  axis("YAW", "qbar S b Cn", product({qS, length.yaw, coefficient(Coefficient::kCn)}));
 }
 
 // --------------------------------------------------------------------------------------------------- propulsion

@@ -35,7 +35,7 @@ NaturalPeriods natural_periods(const Subject& s, const AeroVariables<double>& at
   v.Va = Jet(at.Va);
   const AeroCoefficients<Jet> c = s.model.evaluate(v);
   const double qS = 0.5 * rho * at.Va * at.Va * s.wing_area, momentum = s.mass * at.Va;
-  const double per_q = 0.5 * s.chord / at.Va, per_r = 0.5 * s.span / at.Va;
+  const double per_q = 0.5 * s.pitch_length() / at.Va, per_r = 0.5 * s.yaw_length() / at.Va;
   // A coefficient that is not known acts as none.
   const auto valid = [&](Coefficient which, const Jet& value) {
     return s.model.find(which) != nullptr && std::isfinite(value.a);
@@ -48,9 +48,9 @@ NaturalPeriods natural_periods(const Subject& s, const AeroVariables<double>& at
   // Force and moment in body axes; the force acts off the centre of gravity.
   const Jet X = lift * sa - drag * ca, Y = known(Coefficient::kCY, c.CY), Z = -drag * sa - lift * ca;
   const auto& f = s.force_point;
-  const Jet L = Jet(s.span) * known(Coefficient::kCl, c.Cl) + f[1] * Z - f[2] * Y;
-  const Jet M = Jet(s.chord) * known(Coefficient::kCm, c.Cm) + f[2] * X - f[0] * Z;
-  const Jet N = Jet(s.span) * known(Coefficient::kCn, c.Cn) + f[0] * Y - f[1] * X;
+  const Jet L = Jet(s.roll_length()) * known(Coefficient::kCl, c.Cl) + f[1] * Z - f[2] * Y;
+  const Jet M = Jet(s.pitch_length()) * known(Coefficient::kCm, c.Cm) + f[2] * X - f[0] * Z;
+  const Jet N = Jet(s.yaw_length()) * known(Coefficient::kCn, c.Cn) + f[0] * Y - f[1] * X;
   if (valid(Coefficient::kCL, c.CL) && valid(Coefficient::kCm, c.Cm)) {
     const double Z_alpha = -(lift.v[kAlpha] + drag.a) / momentum, Z_q = -lift.v[kQ] * per_q / momentum;
     const double M_alpha = M.v[kAlpha] / s.inertia->Jy, M_q = M.v[kQ] * per_q / s.inertia->Jy;

@@ -36,6 +36,13 @@ Inertia read_inertia(const StudyTable& subject, std::vector<std::string>& warnin
   return J;
 }
 
+ReferenceLengths read_reference_lengths(const StudyTable& table) {
+  const auto length = [&](std::string_view key) {
+    return table.has(key) ? std::optional(table.positive(key, "m")) : std::nullopt;
+  };
+  return {.roll = length("roll"), .pitch = length("pitch"), .yaw = length("yaw")};
+}
+
 BodySigma read_body_sigma(const StudyTable& table) {
   const auto sigma = [&](std::string_view key, std::string_view unit) {
     const double value = table.number_or(key, unit, 0.0);
@@ -75,6 +82,14 @@ std::string actuator_toml(std::string_view name, const Actuator& a) {
                                 name, a.lower, a.upper, a.time_constant, a.delay);
   if (std::isfinite(a.rate_limit)) out += fmt::format("rate_limit = {}\n", a.rate_limit);
   return out;
+}
+
+std::string lengths_toml(const ReferenceLengths& lengths) {
+  std::vector<std::string> given;
+  if (lengths.roll) given.push_back(fmt::format("roll = {}", *lengths.roll));
+  if (lengths.pitch) given.push_back(fmt::format("pitch = {}", *lengths.pitch));
+  if (lengths.yaw) given.push_back(fmt::format("yaw = {}", *lengths.yaw));
+  return fmt::format("reference_lengths = {{ {} }}\n", fmt::join(given, ", "));
 }
 
 std::string toml_text(std::string_view text) {
@@ -123,9 +138,9 @@ std::string Inertia::inadmissible() const {
 bool operator==(const Subject& a, const Subject& b) {
   return a.name == b.name && a.description == b.description && a.sign_convention == b.sign_convention &&
          a.mass == b.mass && a.inertia == b.inertia && a.sigma == b.sigma && a.wing_area == b.wing_area &&
-         a.span == b.span && a.chord == b.chord && a.force_point == b.force_point && a.imu_position == b.imu_position &&
-         a.model == b.model && a.propulsion == b.propulsion && a.elevator == b.elevator && a.aileron == b.aileron &&
-         a.rudder == b.rudder && a.throttle == b.throttle;
+         a.span == b.span && a.chord == b.chord && a.lengths == b.lengths && a.force_point == b.force_point &&
+         a.imu_position == b.imu_position && a.model == b.model && a.propulsion == b.propulsion &&
+         a.elevator == b.elevator && a.aileron == b.aileron && a.rudder == b.rudder && a.throttle == b.throttle;
 }
 
 Subject read_subject(const StudyTable& table) {
@@ -141,6 +156,7 @@ Subject read_subject(const StudyTable& table) {
   s.wing_area = positive(table, "wing_area", "m^2", s.wing_area);
   s.span = positive(table, "span", "m", s.span);
   s.chord = positive(table, "chord", "m", s.chord);
+  if (table.has("reference_lengths")) s.lengths = read_reference_lengths(table.table("reference_lengths"));
   s.force_point = vector3(table, "force_point", s.force_point);
   s.imu_position = vector3(table, "imu_position", s.imu_position);
   if (table.has("inertia")) {
@@ -164,6 +180,7 @@ std::string write_subject_toml(const Subject& s) {
       "force_point = [{}]\nimu_position = [{}]\n",
       toml_text(s.name), toml_text(s.description), toml_text(s.sign_convention), s.mass, s.wing_area, s.span, s.chord,
       fmt::join(s.force_point, ", "), fmt::join(s.imu_position, ", "));
+  if (s.lengths.any()) out += lengths_toml(s.lengths);
   if (s.inertia) {
     out += fmt::format("inertia = {{ Jx = {}, Jy = {}, Jz = {}, Jxz = {} }}\n", s.inertia->Jx, s.inertia->Jy,
                        s.inertia->Jz, s.inertia->Jxz);

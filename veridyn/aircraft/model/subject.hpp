@@ -52,6 +52,15 @@ struct BodySigma {
   friend bool operator==(const BodySigma&, const BodySigma&) = default;
 };
 
+/// Lengths that make moments and rates dimensionless where they are not span and chord: l = qbar S L_roll Cl,
+/// p_n = L_roll p/(2 Va), and so for pitch and yaw. Study table `[subject.reference_lengths]`.
+struct ReferenceLengths {
+  std::optional<double> roll, pitch, yaw;  ///< [m]; without: span, chord, span
+
+  [[nodiscard]] bool any() const { return roll || pitch || yaw; }
+  friend bool operator==(const ReferenceLengths&, const ReferenceLengths&) = default;
+};
+
 /// The physical aircraft: what is measured on the bench, and its model of aerodynamics as far as known.
 struct Subject {
   std::string name;
@@ -63,6 +72,7 @@ struct Subject {
   double wing_area = 0.0;          ///< S [m^2]
   double span = 0.0;               ///< b [m]
   double chord = 0.0;              ///< c, mean aerodynamic chord [m]
+  ReferenceLengths lengths;
   std::array<double, 3> force_point = {0, 0, 0};   ///< where the aerodynamic force acts, from the centre of gravity [m]
   std::array<double, 3> imu_position = {0, 0, 0};  ///< from the centre of gravity, body axes [m]
   AeroModel model;
@@ -70,6 +80,11 @@ struct Subject {
   Actuator elevator, aileron, rudder;
   Actuator throttle{.lower = 0.0, .upper = 1.0};
   std::vector<std::string> warnings;  ///< what is questionable about the numbers; not written to files
+
+  /// Of Cl and p_n, Cm and q_n, Cn and r_n [m].
+  [[nodiscard]] double roll_length() const { return lengths.roll.value_or(span); }
+  [[nodiscard]] double pitch_length() const { return lengths.pitch.value_or(chord); }
+  [[nodiscard]] double yaw_length() const { return lengths.yaw.value_or(span); }
 
   /// b^2 / S.
   [[nodiscard]] double aspect_ratio() const { return span * span / wing_area; }
@@ -86,6 +101,7 @@ struct Subject {
 ///     wing_area = 0.92          # [m^2] > 0
 ///     span = 2.72               # [m] > 0
 ///     chord = 0.34              # [m] > 0
+///     reference_lengths = { roll = 2.72, pitch = 0.34, yaw = 2.72 }    # [m], each optional: span, chord, span
 ///     force_point = [0, 0, 0]   # [m] where the aerodynamic force acts, from the centre of gravity
 ///     imu_position = [0, 0, 0]  # [m] from the centre of gravity, body axes
 ///     inertia = { Jx = 1.1, Jy = 1.2, Jz = 2.0, Jxz = 0.1 }      # [kg m^2]; Jxz may be left out
