@@ -169,15 +169,17 @@ void write_identification(const StudyRun& run, OutputFolder& folder, const Fligh
   report::AircraftReportContext context{.program = program_name()};
   context.command = run.command;
   const std::size_t count = analysis.flights.size();
-  std::string page;  // the large texts
+  std::string page, coefficients;  // the large texts
   std::vector<std::string> flights(count);
-  numerics::parallel_for(1 + count, run.options().threads, [&](std::size_t k) {
+  numerics::parallel_for(2 + count, run.options().threads, [&](std::size_t k) {
     if (k == 0)
       page = report::to_html(report::identification_report(study, analysis, context));
+    else if (k == 1)
+      coefficients = io::to_csv(coefficient_recording(analysis));
     else
-      flights[k - 1] = io::to_csv(thinned(analysis.flights[k - 1].reconstruction.smoothed, kFlightCsvRate_Hz));
+      flights[k - 2] = io::to_csv(thinned(analysis.flights[k - 2].reconstruction.smoothed, kFlightCsvRate_Hz));
   });
-  folder.write("coefficients.csv", io::to_csv(coefficient_recording(analysis)));
+  folder.write("coefficients.csv", coefficients);
   if (analysis.validation.available())
     folder.write("validation.csv", io::to_csv(validation_recording(analysis.validation)));
   write_open_loop(folder, analysis.open_loop, Frame::kFrd);
@@ -209,15 +211,19 @@ void write_reconstruction(OutputFolder& folder, const FlightStudy& study, const 
   write_filter_tables(folder, analysis.flights.front().reconstruction);
 }
 
-void publish_identification(const StudyRun& run, OutputFolder& folder, std::span<const FlightStudy> studies,
-                            const FlightAnalysis& analysis, const std::vector<std::filesystem::path>& more_inputs) {
-  write_identification(run, folder, studies.front(), analysis);
+std::vector<std::filesystem::path> inputs_of(std::span<const FlightStudy> studies) {
   std::vector<std::filesystem::path> inputs;
   for (const FlightStudy& study : studies) {
     for (const std::filesystem::path& file : study.inputs)
       if (std::ranges::find(inputs, file) == inputs.end()) inputs.push_back(file);
   }
-  RunRecord record = run.record(studies.front().seed, std::move(inputs));
+  return inputs;
+}
+
+void publish_identification(const StudyRun& run, OutputFolder& folder, std::span<const FlightStudy> studies,
+                            const FlightAnalysis& analysis, const std::vector<std::filesystem::path>& more_inputs) {
+  write_identification(run, folder, studies.front(), analysis);
+  RunRecord record = run.record(studies.front().seed, inputs_of(studies));
   record.inputs.insert(record.inputs.end(), more_inputs.begin(), more_inputs.end());
   folder.publish(record, run.options(), summary_of(analysis, folder.path()));
   print_identification(analysis, folder.path(), run.options());

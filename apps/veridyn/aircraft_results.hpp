@@ -11,6 +11,9 @@
 
 namespace veridyn::app {
 
+/// The files that the flights were read from, each once.
+[[nodiscard]] std::vector<std::filesystem::path> inputs_of(std::span<const aircraft::FlightStudy> studies);
+
 /// Writes, publishes and prints an identification or validation: estimate.json, subject.toml, parameters.csv,
 /// flight.csv, coefficients.csv, validation.csv, report.html, run.json; jsbsim.xml where every coefficient was
 /// identified. Of several flights flight_1.csv, flight_2.csv, ... in place of flight.csv.

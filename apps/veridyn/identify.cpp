@@ -33,6 +33,7 @@ int identify_aircraft(const StudyRun& run) {
   OutputFolder folder(run.options().out);
   WorkProgress progress(run, &folder);
   const std::vector<aircraft::FlightStudy> flights = aircraft::read_flights(run.study, progress);
+  if (run.options().threads != 1) folder.hash_ahead(inputs_of(flights));
   const aircraft::FlightAnalysis analysis = aircraft::identify(flights, progress);
   if (analysis.interrupted) throw Interrupted();
   progress.stage("writing the results");
@@ -45,6 +46,7 @@ int identify_vehicle(const StudyRun& run) {
   OutputFolder folder(run.options().out);
   WorkProgress progress(run, &folder);
   PreparedDrive drive = prepare_drive(run.study, progress);
+  if (run.options().threads != 1) folder.hash_ahead(drive.study.inputs);
   const vehicle::VehicleAnalysis analysis = vehicle::identify(drive.study, progress);
   // The best that was found by then is worth its files.
   if (analysis.interrupted && analysis.identification.best() == nullptr) throw Interrupted();

@@ -109,7 +109,7 @@ fs::path OutputFolder::current(const fs::path& file) const {
 void OutputFolder::publish(const RunRecord& run, const CommonOptions& options, const Summary& summary) {
   if (!run.study_to_write.empty()) write("study.toml", run.study_to_write);
   std::vector<HashedInput> inputs;
-  for (const fs::path& input : run.inputs) inputs.push_back({input.string(), sha1_of(current(input))});
+  for (const fs::path& input : run.inputs) inputs.push_back({input.string(), hashes_.of(current(input))});
   const std::string name = "run.json";
   std::vector<std::string> listed = files_;
   listed.push_back(name);

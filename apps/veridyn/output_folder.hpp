@@ -4,8 +4,10 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "apps/veridyn/input_hashes.hpp"
 #include "apps/veridyn/run_record.hpp"
 #include "apps/veridyn/summary.hpp"
 
@@ -38,6 +40,9 @@ class OutputFolder {
   /// Where a file may be written that is no result: it goes with the command.
   [[nodiscard]] std::filesystem::path aside(const std::string& name) const;
 
+  /// Begins to hash inputs of the run, beside what it computes.
+  void hash_ahead(std::vector<std::filesystem::path> inputs) { hashes_.begin(std::move(inputs)); }
+
   /// Writes run.json, prints the summary (`--json`), then moves all files to their names and removes the results of the
   /// run before that this one did not write (`files_of_earlier_run`) and did not read. Call it once, at the end.
   /// @throws as `write` and `print_summary`; then nothing has appeared.
@@ -57,6 +62,7 @@ class OutputFolder {
   std::filesystem::path staging_;            ///< made with the first file
   std::vector<std::filesystem::path> made_;  ///< folders that were not there before, innermost first
   std::vector<std::string> files_;
+  InputHashes hashes_;
 };
 
 }  // namespace veridyn::app

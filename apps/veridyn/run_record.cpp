@@ -52,12 +52,13 @@ bool is_result(const fs::path& folder, const std::string& name) {
 
 }  // namespace
 
-std::string sha1_of(const fs::path& path) {
+std::string sha1_of(const fs::path& path, const std::atomic<bool>* stop) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError(path.string(), "cannot be read");
   boost::uuids::detail::sha1 hash;
   std::vector<char> block(1 << 20);
   while (file.read(block.data(), static_cast<std::streamsize>(block.size())), file.gcount() > 0) {
+    if (stop != nullptr && *stop) break;
     hash.process_bytes(block.data(), at(file.gcount()));
   }
   unsigned int digest[5];

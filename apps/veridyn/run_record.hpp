@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -25,8 +26,9 @@ struct HashedInput {
   std::string sha1;
 };
 
-/// SHA-1 of a file in hexadecimal. @throws InputError when it cannot be read.
-[[nodiscard]] std::string sha1_of(const std::filesystem::path& path);
+/// SHA-1 of a file in hexadecimal; of its part until then where `stop` becomes true.
+/// @throws InputError when it cannot be read.
+[[nodiscard]] std::string sha1_of(const std::filesystem::path& path, const std::atomic<bool>* stop = nullptr);
 
 /// The text of `run.json`: version, command, options, seed, inputs and the names of the files written.
 [[nodiscard]] std::string run_json(const RunRecord& run, const CommonOptions& options,

@@ -261,6 +261,19 @@ TEST_F(Program, IdentifiesARecordingWrittenByItself) {
   const Outcome identified = run("identify " + from_file + " --out " + (folder_ / "out").string());
   ASSERT_EQ(identified.exit_code, 0) << identified.text;
   EXPECT_THAT(identified.text, HasSubstr("Cm is identified"));
+  const Outcome alone = run("identify " + from_file + " --threads 1 --out " + (folder_ / "on_one_thread").string());
+  ASSERT_EQ(alone.exit_code, 0) << alone.text;
+  // run.json says from what, hashed beside the analysis or after it.
+  const std::string sum =
+      run_in_shell("sha1sum " + (folder_ / "recording.csv").string(), "--version").text.substr(0, 40);
+  for (const char* name : {"out", "on_one_thread"}) {
+    const auto record = nlohmann::json::parse(read_file(folder_ / name / "run.json"));
+    ASSERT_EQ(record["inputs"].size(), 2U);
+    EXPECT_EQ(record["inputs"][1]["sha1"], sum) << name;
+  }
+  // Neither that nor anything else depends on the number of threads.
+  for (const char* name : {"estimate.json", "flight.csv", "coefficients.csv", "parameters.csv", "subject.toml"})
+    EXPECT_EQ(read_file(folder_ / "out" / name), read_file(folder_ / "on_one_thread" / name)) << name;
 }
 
 TEST_F(Program, RefusesWhatIsNoStudyOrNoRecording) {

@@ -115,15 +115,15 @@ PreparedFlight prepared(const FlightStudy& study, Progress& progress) {
   if (flight.usable()) {
     const bool data_sheet = options.sensors == NoiseSource::kReference;
     flight.signals = prepare_signals(flight.aligned, flight.reconstruction.smoothed, study.subject, study.signals,
-                                     data_sheet ? &flight.reconstruction.sigma : nullptr);
+                                     data_sheet ? &flight.reconstruction.sigma : nullptr, progress.threads());
     flight.segments = excited_segments(flight.signals, study.segments);
     if (study.held_out) flight.segments = all_held_out(std::move(flight.segments));
   } else {
     flight.segments = recorded_flight(flight.aligned.recording, study.segments.min_airspeed_mps);
   }
   progress.stage("checking the recording");
-  flight.recording_evidence =
-      recording_evidence(flight.aligned.recording, flight.reconstruction, options, flight.segments, flight.delays);
+  flight.recording_evidence = recording_evidence(flight.aligned.recording, flight.reconstruction, options,
+                                                 flight.segments, flight.delays, progress.threads());
   return flight;
 }
 

@@ -93,7 +93,8 @@ Problem make_problem(std::uint64_t seed) {
     const auto sensors = random.index(4);  // 0 to 3 measurements at a time
     for (std::uint64_t s = 0; s < sensors; ++s) {
       Measurement m{k, {}, random.uniform(0.01, 0.5), 2.0 * random.normal()};
-      for (int i = 0; i < 5; ++i) m.H(i) = random.normal();
+      for (int i = 0; i < 5; ++i)
+        m.H(i) = random.uniform(0.0, 1.0) < 0.5 ? 0.0 : random.normal();  // a sensor reads few states
       p.measurements.push_back(m);
     }
   }
@@ -185,7 +186,7 @@ TEST(Smoother, EqualsTheBatchSolutionOfAllData) {
     const Batch all = batch(p, p.dt.size());
     std::size_t emitted = 0;
     smooth_in_blocks<Oscillator>(
-        start(p), 7, [](const Replay&) { return true; },
+        start(p), 7, 2, [](const Replay&) { return true; },
         [&](std::size_t k, const Oscillator::State<double>& x, const Eigen::Matrix<double, 5, 5>& P) {
           const auto at = static_cast<Eigen::Index>(5 * k);
           EXPECT_LT((all.x.segment<5>(at) - x.x).cwiseAbs().maxCoeff(), 1e-10) << "seed " << seed << " step " << k;
@@ -221,30 +222,35 @@ TEST(Smoother, EqualsRauchTungStriebel) {
     Ps[k] = P[k] + C * (Ps[k + 1] - Pp) * C.transpose();
   }
   smooth_in_blocks<Oscillator>(
-      start(p), 1000, [](const Replay&) { return true; },
+      start(p), 1000, 2, [](const Replay&) { return true; },
       [&](std::size_t k, const Oscillator::State<double>& s, const M5& S) {
         EXPECT_LT((xs[k] - s.x).cwiseAbs().maxCoeff(), 1e-10);
         EXPECT_LT((Ps[k] - S).cwiseAbs().maxCoeff(), 1e-10);
       });
 }
 
-TEST(Smoother, IsTheSameForAnyLengthOfBlock) {
+TEST(Smoother, IsTheSameForAnyLengthOfBlockAndNumberOfThreads) {
   const Problem p = make_problem(4);
   std::vector<Eigen::Matrix<double, 5, 1>> one(p.dt.size() + 1), many(p.dt.size() + 1);
   const auto into = [](auto& where) {
     return [&where](std::size_t k, const Oscillator::State<double>& s, const auto&) { where[k] = s.x; };
   };
   const auto on = [](const Replay&) { return true; };
-  smooth_in_blocks<Oscillator>(start(p), 1, on, into(one));
-  smooth_in_blocks<Oscillator>(start(p), 41, on, into(many));
-  for (std::size_t k = 0; k < one.size(); ++k) EXPECT_EQ(one[k], many[k]) << "step " << k;
+  smooth_in_blocks<Oscillator>(start(p), 1, 1, on, into(one));
+  for (const int threads : {1, 2}) {
+    for (const std::size_t block : {1U, 7U, 41U}) {
+      smooth_in_blocks<Oscillator>(start(p), block, threads, on, into(many));
+      for (std::size_t k = 0; k < one.size(); ++k)
+        EXPECT_EQ(one[k], many[k]) << "step " << k << " of blocks of " << block << " on " << threads;
+    }
+  }
 }
 
 TEST(Smoother, SmoothsWhatWasDoneWhenTheForwardPassIsStopped) {
   const Problem p = make_problem(4);
   std::size_t marks = 0;
   const Replay end = smooth_in_blocks<Oscillator>(
-      start(p), 4, [](const Replay& run) { return run.next < 10; },
+      start(p), 4, 2, [](const Replay& run) { return run.next < 10; },
       [&](std::size_t, const Oscillator::State<double>&, const auto&) { ++marks; });
   EXPECT_EQ(end.next, 10U);
   EXPECT_EQ(marks, 10U);

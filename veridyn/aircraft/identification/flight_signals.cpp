@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <span>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/numerics/parallel.hpp"
 #include "veridyn/numerics/rotation.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -123,23 +125,21 @@ struct InertialSignals {
   std::array<GridSignal, 3> rate, rate_derivative, force;
 };
 
-InertialSignals inertial_signals(const GriddedChannels& channels, const CommonGrid& common) {
-  const std::array<const char*, 3> gyros{"gyro_x", "gyro_y", "gyro_z"};
-  const std::array<const char*, 3> accels{"accel_x", "accel_y", "accel_z"};
-  InertialSignals signals;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::vector<double> raw = channels.raw(gyros[i]);
-    const double sd = channels.noise_of(gyros[i], raw);
-    signals.rate[i] = channels.filtered(common.smooth, gyros[i], raw, sd, "filtered gyro");
-    signals.rate_derivative[i] = channels.filtered(common.differentiate, gyros[i], raw, sd, "differentiated gyro");
-  }
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (channels.find(accels[i]) == nullptr) continue;
-    const std::vector<double> raw = channels.raw(accels[i]);
-    const double sd = channels.noise_of(accels[i], raw);
-    signals.force[i] = channels.filtered(common.smooth, accels[i], raw, sd, "filtered accelerometer");
-  }
-  return signals;
+/// Those of one axis, 0 to 2.
+void find_inertial(const GriddedChannels& channels, const CommonGrid& common, std::size_t axis,
+                   InertialSignals& signals) {
+  static constexpr std::array<const char*, 3> kGyros{"gyro_x", "gyro_y", "gyro_z"};
+  static constexpr std::array<const char*, 3> kAccelerometers{"accel_x", "accel_y", "accel_z"};
+  const char* const gyro = kGyros[axis];
+  const std::vector<double> rate = channels.raw(gyro);
+  const double gyro_sd = channels.noise_of(gyro, rate);
+  signals.rate[axis] = channels.filtered(common.smooth, gyro, rate, gyro_sd, "filtered gyro");
+  signals.rate_derivative[axis] = channels.filtered(common.differentiate, gyro, rate, gyro_sd, "differentiated gyro");
+  const char* const accelerometer = kAccelerometers[axis];
+  if (channels.find(accelerometer) == nullptr) return;
+  const std::vector<double> force = channels.raw(accelerometer);
+  signals.force[axis] = channels.filtered(common.smooth, accelerometer, force, channels.noise_of(accelerometer, force),
+                                          "filtered accelerometer");
 }
 
 /// Specific force at the centre of gravity: a_cg = a - w' x r - w x (w x r), `r` from there to the sensor [m].
@@ -400,7 +400,7 @@ FlightSample<double> FlightSignals::sample(std::size_t k) const {
 }
 
 FlightSignals prepare_signals(const MappedRecording& mapped, const Recording& smoothed, const Subject& subject,
-                              const SignalOptions& options, const SensorSigma* known) {
+                              const SignalOptions& options, const SensorSigma* known, int threads) {
   const CommonGrid common = common_grid(mapped, options);
   const GriddedChannels channels(mapped, common, options, known);
   const numerics::UniformGrid& grid = common.grid;
@@ -413,7 +413,36 @@ FlightSignals prepare_signals(const MappedRecording& mapped, const Recording& sm
   };
 
   using F = FlightSignal;
-  InertialSignals inertial = inertial_signals(channels, common);
+  static constexpr std::array<std::pair<const char*, F>, 3> kSurfaces{
+      {{"elevator", F::kElevator}, {"aileron", F::kAileron}, {"rudder", F::kRudder}}};
+  const auto angle_where_known = [&](const char* name, double otherwise) {
+    const Channel* channel = smoothed.find(name);
+    return channel == nullptr ? std::vector<double>(grid.count, otherwise) : angle_on_grid(*channel, grid);
+  };
+  const auto where_known = [&](const char* name) {
+    const Channel* channel = smoothed.find(name);
+    return channel == nullptr ? std::vector<double>(grid.count, kNaN) : on_grid(*channel, grid);
+  };
+  InertialSignals inertial;
+  FlowSignals flow;
+  std::array<Deflection, 3> surfaces;
+  std::vector<std::function<void()>> parts{
+      [&] { flow = flow_signals(channels, common, smoothed, options.flow_angles); },
+      [&] { flight.roll = angle_where_known("roll", kNaN); },
+      [&] { flight.pitch = angle_where_known("pitch", kNaN); },
+      [&] { flight.yaw = angle_where_known("yaw", 0.0); },  // where nothing shows the heading, any does
+      [&] { flight.vel_north = where_known("vel_north"); },
+      [&] { flight.vel_east = where_known("vel_east"); },
+      [&] { flight.vel_down = where_known("vel_down"); },
+      [&] { flight.wind_north = where_known("wind_north"); },
+      [&] { flight.wind_east = where_known("wind_east"); },
+      [&] { flight.wind_down = where_known("wind_down"); }};
+  for (std::size_t i = 0; i < 3; ++i) {
+    parts.emplace_back([&, i] { find_inertial(channels, common, i, inertial); });
+    parts.emplace_back([&, i] { surfaces[i] = deflection(channels, common, kSurfaces[i].first, kSurfaces[i].second); });
+  }
+  numerics::parallel_for(parts.size(), threads, [&](std::size_t i) { parts[i](); });
+
   const Eigen::Vector3d arm(subject.imu_position[0], subject.imu_position[1], subject.imu_position[2]);
   if (arm.norm() > 0.0) {
     inertial.force = force_at_centre_of_gravity(inertial, arm);
@@ -428,7 +457,6 @@ FlightSignals prepare_signals(const MappedRecording& mapped, const Recording& sm
     flight[forces[i]] = std::move(inertial.force[i]);
   }
 
-  FlowSignals flow = flow_signals(channels, common, smoothed, options.flow_angles);
   ThrustSignals thrust = thrust_signals(channels, common, subject.propulsion, flow);
   for (std::string& text : flow.notes) note(std::move(text));
   note(std::move(thrust.note));
@@ -442,36 +470,16 @@ FlightSignals prepare_signals(const MappedRecording& mapped, const Recording& sm
   flight.torque = std::move(thrust.torque);
   flight.thrust_per_airspeed = std::move(thrust.per_airspeed);
 
-  for (const auto& [name, which] :
-       {std::pair("elevator", F::kElevator), std::pair("aileron", F::kAileron), std::pair("rudder", F::kRudder)}) {
-    Deflection surface = deflection(channels, common, name, which);
-    flight[which] = std::move(surface.signal);
-    flight.jumps.insert(flight.jumps.end(), surface.jumps.begin(), surface.jumps.end());
+  for (std::size_t i = 0; i < 3; ++i) {
+    flight[kSurfaces[i].second] = std::move(surfaces[i].signal);
+    flight.jumps.insert(flight.jumps.end(), surfaces[i].jumps.begin(), surfaces[i].jumps.end());
   }
   flight.jump_response = response_to_jump(common.smooth);
 
-  const auto angle_where_known = [&](const char* name, double otherwise) {
-    const Channel* channel = smoothed.find(name);
-    return channel == nullptr ? std::vector<double>(grid.count, otherwise) : angle_on_grid(*channel, grid);
-  };
-  flight.roll = angle_where_known("roll", kNaN);
-  flight.pitch = angle_where_known("pitch", kNaN);
   flight.roll_sigma = typical_sigma(smoothed, "sigma_roll");
   flight.pitch_sigma = typical_sigma(smoothed, "sigma_pitch");
-  // Where nothing shows the heading, any does.
-  flight.yaw = angle_where_known("yaw", 0.0);
-  const auto where_known = [&](const char* name) {
-    const Channel* channel = smoothed.find(name);
-    return channel == nullptr ? std::vector<double>(grid.count, kNaN) : on_grid(*channel, grid);
-  };
-  flight.vel_north = where_known("vel_north");
-  flight.vel_east = where_known("vel_east");
-  flight.vel_down = where_known("vel_down");
   flight.over_ground = smoothed.has("vel_north");
   if (!flight.over_ground && smoothed.has("gust_x")) velocity_through_mean_air(smoothed, flight);
-  flight.wind_north = where_known("wind_north");
-  flight.wind_east = where_known("wind_east");
-  flight.wind_down = where_known("wind_down");
   return flight;
 }
 

@@ -73,9 +73,10 @@ struct FlightSignals : recording::GridSignals<FlightSignal, kFlightSignals> {
 /// `known` gives the sensors' noise where their data sheet is known; otherwise it is measured.
 /// Where `smoothed.information` says that the airspeed is as recorded, its error is taken for a classical one.
 /// What the recording and `smoothed` lack is not available, and attitude and wind are NaN.
+/// @param threads  0: as many as the machine has
 /// @throws InputError when gyro or smoothed airspeed are missing.
 [[nodiscard]] FlightSignals prepare_signals(const MappedRecording& mapped, const Recording& smoothed,
                                             const Subject& subject, const SignalOptions& options,
-                                            const SensorSigma* known = nullptr);
+                                            const SensorSigma* known = nullptr, int threads = 0);
 
 }  // namespace veridyn::aircraft

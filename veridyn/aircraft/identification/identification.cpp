@@ -16,6 +16,7 @@
 #include "veridyn/aircraft/identification/sensor_doubt.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/judgement/agreement.hpp"
+#include "veridyn/numerics/parallel.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::aircraft {
@@ -290,26 +291,31 @@ std::string unmodelled_text(double error_ratio, double unmodelled_share) {
 
 Identification identify_coefficients(std::span<const PreparedFlight> flights, const Subject& subject,
                                      const IdentifyOptions& options, Progress& progress) {
-  std::vector<FittedCoefficient> fitted;
   const FlightView flight{flights, subject, options};
   progress.stage("identifying coefficients");
-  std::size_t done = 0;
+  std::vector<const CoefficientModel*> models;
   for (const Coefficient c : enumerators<Coefficient, kCoefficients>()) {
-    ++done;
     const CoefficientModel* model = subject.model.find(c);
     const auto& some = options.coefficients;
-    if (model == nullptr || (!some.empty() && std::find(some.begin(), some.end(), c) == some.end())) continue;
-    fitted.push_back(fit_terms(*model, flight));
-    if (!progress.update(static_cast<double>(done) / static_cast<double>(kCoefficients))) break;
+    if (model != nullptr && (some.empty() || std::ranges::find(some, c) != some.end())) models.push_back(model);
   }
+  const double steps = 2.0 * static_cast<double>(models.size());
+  std::vector<FittedCoefficient> fitted(models.size());
+  const auto fit = [&](std::size_t i) { fitted[i] = fit_terms(*models[i], flight); };
+  const auto fitting = [&](std::size_t done) { return progress.update(static_cast<double>(done) / steps); };
+  if (!numerics::parallel_for(models.size(), progress.threads(), fit, fitting)) return {};
   std::optional<ChosenOutputError> flown;
   if (options.choose_output_error) {
     progress.stage("output error");
     flown = fly_axes(fitted, flight, progress);
   }
   Identification found;
-  for (FittedCoefficient& one : fitted)
-    found.coefficients.push_back(judged(std::move(one), flight, flown ? &*flown : nullptr));
+  found.coefficients.resize(models.size());
+  const auto judge = [&](std::size_t i) {
+    found.coefficients[i] = judged(std::move(fitted[i]), flight, flown ? &*flown : nullptr);
+  };
+  const auto judging = [&](std::size_t done) { return progress.update(0.5 + static_cast<double>(done) / steps); };
+  if (!numerics::parallel_for(models.size(), progress.threads(), judge, judging)) return {};
   if (flown) found.output_error = std::move(flown->identification);
   return found;
 }

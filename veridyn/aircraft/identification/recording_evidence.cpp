@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include "veridyn/aircraft/identification/air_data_evidence.hpp"
 #include "veridyn/aircraft/identification/contradicted_flight.hpp"
 #include "veridyn/aircraft/identification/missing_sensor_evidence.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/units.hpp"
+#include "veridyn/numerics/parallel.hpp"
 #include "veridyn/recording/inertial_consistency.hpp"
 #include "veridyn/recording/sample_evidence.hpp"
 #include "veridyn/recording/time_order.hpp"
@@ -123,6 +125,13 @@ std::vector<FlightEvidence> sample_rows(const Recording& recording, const Segmen
     const bool alpha = row.about == "alpha", beta = row.about == "beta";
     rows.push_back({std::move(row), alpha ? by_alpha() : beta ? by_beta() : std::vector<Coefficient>{}});
   }
+  return rows;
+}
+
+std::vector<FlightEvidence> inertial_rows(const Recording& recording, const Segments& segments) {
+  std::vector<FlightEvidence> rows;
+  for (Evidence& row : recording::inertial_evidence(recording::inertial_consistency(recording, segments.airborne)))
+    rows.push_back({std::move(row)});
   return rows;
 }
 
@@ -290,16 +299,22 @@ FlightEvidence body_row() {
 
 std::vector<FlightEvidence> recording_evidence(const Recording& recording, const Reconstruction& reconstruction,
                                                const ReconstructOptions& options, const Segments& segments,
-                                               std::span<const DelayReport> delays) {
-  std::vector<FlightEvidence> rows = sample_rows(recording, segments);
+                                               std::span<const DelayReport> delays, int threads) {
+  // What takes time, side by side.
+  const std::array<std::function<std::vector<FlightEvidence>()>, 3> checks{
+      [&] { return sample_rows(recording, segments); }, [&] { return inertial_rows(recording, segments); },
+      [&] { return air_data_evidence(recording, reconstruction, options.airspeed_is_true, segments); }};
+  std::array<std::vector<FlightEvidence>, 3> found;
+  numerics::parallel_for(checks.size(), threads, [&](std::size_t i) { found[i] = checks[i](); });
+
+  std::vector<FlightEvidence> rows = std::move(found[0]);
   const auto add = [&](std::vector<FlightEvidence> more) {
     for (FlightEvidence& row : more) rows.push_back(std::move(row));
   };
-  for (Evidence& row : recording::inertial_evidence(recording::inertial_consistency(recording, segments.airborne)))
-    rows.push_back({std::move(row)});
+  add(std::move(found[1]));
   add(delay_rows(delays));
   add(together_rows(delays));
-  add(air_data_evidence(recording, reconstruction, options.airspeed_is_true, segments));
+  add(std::move(found[2]));
   add(missing_sensor_evidence(recording, reconstruction, segments));
   add(range_rows(recording, segments));
   if (std::optional<FlightEvidence> length = length_row(reconstruction, segments)) rows.push_back(std::move(*length));

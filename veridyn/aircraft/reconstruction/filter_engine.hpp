@@ -62,7 +62,7 @@ class FilterEngine {
   /// Filter and smoother over a segment (see estimation::smooth_in_blocks).
   [[nodiscard]] virtual PassEnd smooth(const RunSetting& setting, const Segment& segment, const Monitors& monitors,
                                        std::size_t first_output, std::span<const std::size_t> error_columns,
-                                       const OnFiltered& filtered, const OnSmoothed& smoothed) const = 0;
+                                       int threads, const OnFiltered& filtered, const OnSmoothed& smoothed) const = 0;
   [[nodiscard]] virtual std::unique_ptr<InnovationRun> innovation_run(const RunSetting& setting, const Segment& segment,
                                                                       const Monitors& monitors) const = 0;
   [[nodiscard]] virtual std::unique_ptr<AirDataEstimator> estimator(const ModelBasedMotion& motion,

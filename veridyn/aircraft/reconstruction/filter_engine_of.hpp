@@ -76,7 +76,7 @@ class EngineOf final : public FilterEngine {
   bool has_forces() const override { return FlightRun<Model>::kForces; }
 
   PassEnd smooth(const RunSetting& setting, const Segment& segment, const Monitors& monitors, std::size_t first_output,
-                 std::span<const std::size_t> error_columns, const OnFiltered& filtered,
+                 std::span<const std::size_t> error_columns, int threads, const OnFiltered& filtered,
                  const OnSmoothed& smoothed) const override {
     constexpr std::size_t kBlock = 512;
     const auto forward = [&](const FlightRun<Model>& now) {
@@ -88,7 +88,7 @@ class EngineOf final : public FilterEngine {
       smoothed(number, x, view_of<Model>(P));
     };
     const FlightRun<Model> run(setting, segment, start_of(setting, segment), monitors, first_output);
-    const FlightRun<Model> end = estimation::smooth_in_blocks<Model>(run, kBlock, forward, emit);
+    const FlightRun<Model> end = estimation::smooth_in_blocks<Model>(run, kBlock, threads, forward, emit);
     return {end.monitors(), view_of<Model>(end.filter().covariance()).of_columns(error_columns)};
   }
 

@@ -77,7 +77,7 @@ Solution run_pass(const FilterEngine& engine, const SolveTask& task, const RunSe
   for (std::size_t i = 0; i < task.segments.size() && going; ++i) {
     const Segment& segment = task.segments[i];
     PassEnd end = engine.smooth(setting, segment, solution.monitors, task.first_stamp[i], solution.error_columns,
-                                filtered, smoothed);
+                                share.progress->threads(), filtered, smoothed);
     solution.monitors = end.monitors;
     solution.contradiction = contradiction_of(s, end.monitors);
     if (solution.contradiction) {

@@ -71,8 +71,7 @@ class Alignment {
     const bool surface = surface_axis(group.name) != nullptr;
     if (!report.together.empty() || (surface && moving_together(group.name).size() > 1)) return;
     // Of a surface the position was moved later.
-    if (report.applied)
-      recording::take_off_delay(recording_, group.channels, surface ? report.delay_s : -report.delay_s);
+    if (report.applied) take_off(group.channels, surface ? report.delay_s : -report.delay_s);
     if (const std::optional<DelayReport> again = surface ? deflection(group) : vane(group)) report = *again;
   }
 
@@ -81,8 +80,30 @@ class Alignment {
     return std::all_of(names.begin(), names.end(), [&](const char* name) { return recording_.has(name); });
   }
   const Channel& at(std::string_view name) const { return recording_.at(name); }
-  Series smooth(const char* name) const { return band_.smooth(at(name)); }
-  Series smooth_angle(const char* name) const { return band_.smooth_angle(at(name)); }
+  /// Found once, as most groups are compared with the same channels.
+  const Series& smooth(std::string_view name) const {
+    return kept(smoothed_, name, [this](const Channel& channel) { return band_.smooth(channel); });
+  }
+  const Series& smooth_angle(std::string_view name) const {
+    return kept(smoothed_angles_, name, [this](const Channel& channel) { return band_.smooth_angle(channel); });
+  }
+  double noise_variance(std::string_view name) const {
+    return kept(noise_, name, [this](const Channel& channel) { return band_.noise_variance(channel); });
+  }
+  template <typename Kept, typename Find>
+  const Kept& kept(std::map<std::string, Kept, std::less<>>& found, std::string_view name, const Find& find) const {
+    auto it = found.find(name);
+    if (it == found.end()) it = found.emplace(std::string(name), find(at(name))).first;
+    return it->second;
+  }
+
+  void take_off(const std::vector<std::string>& channels, double delay_s) {
+    recording::take_off_delay(recording_, channels, delay_s);
+    for (const std::string& channel : channels) {
+      smoothed_.erase(channel);
+      smoothed_angles_.erase(channel);
+    }
+  }
 
   /// [m/s]; of the dynamic pressure in air of sea level where there is no airspeed, constant without either, NaN where
   /// the aircraft does not fly.
@@ -101,14 +122,14 @@ class Alignment {
 
   DelayReport compare(const DelayGroup& group, const char* reference, const std::vector<recording::DelayPair>& pairs) {
     DelayReport report = recording::shared_delay(group.name, reference, pairs, band_.rate_Hz(), options_);
-    if (report.applied) recording::take_off_delay(recording_, group.channels, report.delay_s);
+    if (report.applied) take_off(group.channels, report.delay_s);
     return report;
   }
 
   std::optional<DelayReport> attitude(const DelayGroup& group) {
     if (!has({"roll", "pitch", "yaw"})) return std::nullopt;
-    const Series phi = smooth_angle("roll"), theta = smooth_angle("pitch");
-    const Series p = smooth("gyro_x"), q = smooth("gyro_y"), r = smooth("gyro_z");
+    const Series &phi = smooth_angle("roll"), &theta = smooth_angle("pitch");
+    const Series &p = smooth("gyro_x"), &q = smooth("gyro_y"), &r = smooth("gyro_z");
     Series roll_rate(band_.size()), pitch_rate(band_.size());
     for (std::size_t k = 0; k < band_.size(); ++k) {
       const auto rates = numerics::euler_rates(phi[k], theta[k], numerics::Vector3<double>(p[k], q[k], r[k]));
@@ -134,8 +155,8 @@ class Alignment {
                          fmt::format("not determined: {:.2g} samples a second are fewer than {:g}", fixes,
                                      recording::kSlowestDelayed_Hz)};
     }
-    const Series phi = smooth_angle("roll"), theta = smooth_angle("pitch"), psi = smooth_angle("yaw");
-    const Series ax = smooth("accel_x"), ay = smooth("accel_y"), az = smooth("accel_z");
+    const Series &phi = smooth_angle("roll"), &theta = smooth_angle("pitch"), &psi = smooth_angle("yaw");
+    const Series &ax = smooth("accel_x"), &ay = smooth("accel_y"), &az = smooth("accel_z");
     Series north(band_.size()), east(band_.size());
     for (std::size_t k = 0; k < band_.size(); ++k) {
       const numerics::Vector3<double> acceleration = numerics::R_body_from_ned(phi[k], theta[k], psi[k]).transpose() *
@@ -152,8 +173,8 @@ class Alignment {
 
   /// Derivative of the airspeed that specific force and attitude imply in still air.
   Series implied_airspeed_derivative() const {
-    const Series phi = smooth_angle("roll"), theta = smooth_angle("pitch");
-    const Series ax = smooth("accel_x"), ay = smooth("accel_y"), az = smooth("accel_z");
+    const Series &phi = smooth_angle("roll"), &theta = smooth_angle("pitch");
+    const Series &ax = smooth("accel_x"), &ay = smooth("accel_y"), &az = smooth("accel_z");
     const Series alpha = has({"alpha"}) ? smooth("alpha") : Series(band_.size(), 0.0);
     const Series beta = has({"beta"}) ? smooth("beta") : Series(band_.size(), 0.0);
     Series derivative(band_.size());
@@ -205,7 +226,7 @@ class Alignment {
     }
     /// The channel in the same way, with its noise.
     [[nodiscard]] recording::Explanatory measured(const char* channel, std::size_t power) const {
-      return {over_speed(from_.smooth(channel), power), mean_[power] * from_.band_.noise_variance(from_.at(channel))};
+      return {over_speed(from_.smooth(channel), power), mean_[power] * from_.noise_variance(channel)};
     }
     void add(const char* channel, std::size_t power) {
       if (from_.recording_.has(channel)) others_.push_back(measured(channel, power));
@@ -240,12 +261,12 @@ class Alignment {
     }
     // The vane is late against all of them.
     DelayReport report = recording::common_effect_delay(group.name, lift ? "lift (accel_z)" : "side force (accel_y)",
-                                                        {{.effect = smooth(group.name.c_str()),
+                                                        {{.effect = smooth(group.name),
                                                           .causes = {equation.measured(force, 2)},
                                                           .others = {},
                                                           .late_others = equation.others()}},
                                                         band_.step(), options_, progress_, "force");
-    if (report.applied) recording::take_off_delay(recording_, group.channels, report.delay_s);
+    if (report.applied) take_off(group.channels, report.delay_s);
     return report;
   }
 
@@ -253,7 +274,7 @@ class Alignment {
   /// normalised rates, products of the rates that couple through the inertia, and the other surface of the axis. What
   /// is left out moves with the aircraft, and so with the pilot who holds it, and biases the delay.
   Equation moment_equation(const SurfaceAxis& axis, const std::vector<std::string>& causes) const {
-    const Series p = smooth("gyro_x"), q = smooth("gyro_y"), r = smooth("gyro_z");
+    const Series &p = smooth("gyro_x"), &q = smooth("gyro_y"), &r = smooth("gyro_z");
     const auto products = [&](auto value) {
       Series series(band_.size());
       for (std::size_t k = 0; k < series.size(); ++k) series[k] = value(k);
@@ -283,7 +304,7 @@ class Alignment {
     if (const auto found = shared_.find(group.name); found != shared_.end()) return found->second;
     const std::vector<std::string> together = moving_together(group.name);
     std::vector<recording::Explanatory> causes;
-    for (const std::string& surface : together) causes.push_back({band_.smooth(at(surface))});
+    for (const std::string& surface : together) causes.push_back({smooth(surface)});
     std::vector<recording::DelayedEffect> effects;
     std::vector<std::string> rates;
     for (const std::string& surface : together) {
@@ -304,19 +325,18 @@ class Alignment {
       }
     }
     // What is late here is the effect: the position is moved later, onto the clock of the motion.
-    if (report.applied) recording::take_off_delay(recording_, together, -report.delay_s);
+    if (report.applied) take_off(together, -report.delay_s);
     return report;
   }
 
   /// The surface and those whose delay is searched too and that move with it, in the order of `groups`.
   std::vector<std::string> moving_together(const std::string& surface) const {
     std::vector<std::string> together;
-    const Series position = band_.smooth(at(surface));
+    const Series& position = smooth(surface);
     for (const SurfaceAxis& other : kSurfaceAxes) {
       const bool same = other.surface == surface;
       if (!same && (!recording_.has(other.surface) || options_.given_for(other.surface))) continue;
-      if (same ||
-          std::abs(recording::correlation_of(position, band_.smooth(at(other.surface)))) > recording::kMoveTogether)
+      if (same || std::abs(recording::correlation_of(position, smooth(other.surface))) > recording::kMoveTogether)
         together.emplace_back(other.surface);
     }
     return together;
@@ -326,6 +346,9 @@ class Alignment {
   const DelayAlignment& options_;
   const BandLimited& band_;
   Progress& progress_;
+  // Of channels as they are aligned so far.
+  mutable std::map<std::string, Series, std::less<>> smoothed_, smoothed_angles_;
+  mutable std::map<std::string, double, std::less<>> noise_;
   std::map<std::string, DelayReport> shared_;  ///< of surfaces that were found together with one before
 };
 

@@ -79,7 +79,10 @@ class ExtendedKalmanFilter {
   /// of `monitor` lets it in. Returns whether it did; `seen` receives the innovation in either case.
   bool update(double t, double nu, const Vector& H, double r, InnovationMonitor& monitor,
               SmootherTape<Model>* tape = nullptr, Innovation* seen = nullptr) noexcept {
-    const Vector PH = P_.lazyProduct(H);
+    // By the entries of H that are not zero: a sensor reads few states.
+    Vector PH = Vector::Zero();
+    for (int k = 0; k < kStates; ++k)
+      if (H(k) != 0.0) PH += H(k) * P_.col(k);
     double S = H.dot(PH) + r;
     const auto verdict = monitor.judge(t, nu, S);
     if (seen) *seen = {nu, S, verdict.accept};

@@ -1,7 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <array>
 #include <cstddef>
+#include <functional>
+#include <future>
 #include <utility>
 #include <vector>
 
@@ -55,15 +59,13 @@ class FixedIntervalSmoother {
           const Vector LK = Lambda_.lazyProduct(K);
           const double weight = 1.0 / update->S + K.dot(LK);
           const Vector half = (0.5 * weight) * H - LK;
-          Lambda_ += half.lazyProduct(H.transpose()) + H.lazyProduct(half.transpose());
+          add_symmetric(half, H);
           lambda_ -= H * (update->nu / update->S + K.dot(lambda_));
           ++update;
           break;
         }
         case Tape::Kind::kMark: {
-          const Covariance PL = mark->P.lazyProduct(Lambda_);
-          Covariance P = mark->P;
-          P -= PL.lazyProduct(mark->P);
+          const Covariance P = smoothed_covariance(mark->P);
           const Vector correction = -mark->P.lazyProduct(lambda_);
           emit(mark->number, Model::template retract<double>(mark->x, correction), P);
           ++mark;
@@ -74,6 +76,42 @@ class FixedIntervalSmoother {
   }
 
  private:
+  /// P - P Lambda P: of what is symmetric the lower triangle.
+  [[nodiscard]] Covariance smoothed_covariance(const Covariance& P) const {
+    constexpr int N = Model::kStates;
+    const Covariance PL = P.lazyProduct(Lambda_);
+    Covariance smoothed = P;
+    [&]<int... Pair>(std::integer_sequence<int, Pair...>) { (subtract_below<2 * Pair>(PL, P, smoothed), ...); }
+    (std::make_integer_sequence<int, (N + 1) / 2>());
+    for (int j = 1; j < N; ++j)
+      for (int i = 0; i < j; ++i) smoothed(i, j) = smoothed(j, i);
+    return smoothed;
+  }
+
+  /// Two columns of `result` less those of PL P, from the row of the first one down.
+  template <int From>
+  static void subtract_below(const Covariance& PL, const Covariance& P, Covariance& result) {
+    constexpr int N = Model::kStates, kRows = N - From, kColumns = std::min(2, kRows);
+    result.template block<kRows, kColumns>(From, From) -=
+        PL.template bottomRows<kRows>().lazyProduct(P.template middleCols<kColumns>(From));
+  }
+
+  /// Lambda <- Lambda + half H' + H half', by the entries of H that are not zero: a sensor reads few states.
+  void add_symmetric(const Vector& half, const Vector& H) {
+    constexpr int N = Model::kStates;
+    std::array<int, N> entries;
+    std::size_t count = 0;
+    for (int k = 0; k < N; ++k)
+      if (H(k) != 0.0) entries[count++] = k;
+    for (int j = 0; j < N; ++j) {
+      if (H(j) != 0.0) {
+        Lambda_.col(j) += half * H(j) + H * half(j);
+      } else {
+        for (std::size_t i = 0; i < count; ++i) Lambda_(entries[i], j) += H(entries[i]) * half(j);
+      }
+    }
+  }
+
   [[nodiscard]] static Covariance times_transition(const Covariance& M, const typename Tape::TransitionRows& F) {
     constexpr int D = Model::kDynamic, N = Model::kStates;
     Covariance product;
@@ -102,8 +140,11 @@ class FixedIntervalSmoother {
 /// nothing, at the end. Repeating a copy must repeat the results. `on_forward(run)` is called after each step of the
 /// forward pass and may return false to stop there (the steps done so far are still smoothed). Returns the run at the
 /// end of the forward pass.
+///
+/// With more than one thread (0: as many as the machine has) the next block is repeated while one is swept: a second
+/// tape, and not a bit different. All is called on the calling thread but `advance` of the repeated copies.
 template <SystemModel Model, class Run, class OnForward, class Emit>
-Run smooth_in_blocks(Run run, std::size_t block, OnForward&& on_forward, Emit&& emit) {
+Run smooth_in_blocks(Run run, std::size_t block, int threads, OnForward&& on_forward, Emit&& emit) {
   std::vector<std::pair<Run, std::size_t>> starts;
   bool going = true;
   while (going) {
@@ -118,14 +159,28 @@ Run smooth_in_blocks(Run run, std::size_t block, OnForward&& on_forward, Emit&& 
     }
     if (start.second > 0) starts.push_back(std::move(start));
   }
-  FixedIntervalSmoother<Model> smoother;
-  SmootherTape<Model> tape;
-  while (!starts.empty()) {
-    tape.clear();
+  const auto repeat = [&starts](SmootherTape<Model>* tape) {
+    tape->clear();
     auto& [again, steps] = starts.back();
-    for (std::size_t i = 0; i < steps; ++i) static_cast<void>(again.advance(&tape));
-    smoother.sweep(tape, emit);
+    for (std::size_t i = 0; i < steps; ++i) static_cast<void>(again.advance(tape));
     starts.pop_back();
+  };
+  FixedIntervalSmoother<Model> smoother;
+  std::array<SmootherTape<Model>, 2> tapes;
+  SmootherTape<Model>*tape = &tapes[0], *next = &tapes[1];
+  bool more = !starts.empty();
+  if (more) repeat(tape);
+  while (more) {
+    more = !starts.empty();
+    std::future<void> repeating;
+    if (more && threads != 1) repeating = std::async(std::launch::async, repeat, next);
+    smoother.sweep(*tape, emit);
+    if (repeating.valid()) {
+      repeating.get();
+    } else if (more) {
+      repeat(next);
+    }
+    std::swap(tape, next);
   }
   return run;
 }
