@@ -7,6 +7,7 @@
 
 #include "tests/support/temporary_folder.hpp"
 #include "tests/vehicle/changed_drive.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/files.hpp"
 
 namespace veridyn::vehicle {
@@ -42,6 +43,24 @@ TEST(DriveLog, TurnsAFrdRecordingIntoFlu) {
   EXPECT_EQ(prepare_drive_signals(by_study, {})[DriveSignal::kYawRate].value, a[DriveSignal::kYawRate].value);
   EXPECT_NE(why([&] { static_cast<void>(map_drive_channels(frd, StudyTable(), "ned")); }).find("'flu'"),
             std::string::npos);
+}
+
+// A car that leans a degree to the other side does not stand on its roof.
+TEST(DriveLog, TakesTiltFromZeroToAWholeTurnAsAboutZero) {
+  Recording log;
+  const TimeBase time = make_time_base({0.0, 0.1, 0.2, 0.3});
+  log.frame = Frame::kFlu;
+  log.add(make_channel("roll", "rad", time, {359.0 * kDegree, 1.0 * kDegree, 350.0 * kDegree, 0.0}));
+  log.add(make_channel("pitch", "rad", time, {0.01, -0.02, 3.0, -3.0}));
+  log.add(make_channel("yaw", "rad", time, {6.0, 6.2, 0.1, 0.3}));
+  const recording::MappedRecording mapped = map_drive_channels(log, StudyTable("data.map"));
+  const std::vector<double>& roll = mapped.recording.at("roll").value;
+  for (const auto& [k, degrees] : {std::pair{0, -1.0}, std::pair{1, 1.0}, std::pair{2, -10.0}, std::pair{3, 0.0}})
+    EXPECT_NEAR(roll[k], degrees * kDegree, 1e-12);
+  EXPECT_EQ(mapped.recording.at("pitch").value, log.at("pitch").value) << "within half a turn already";
+  EXPECT_EQ(mapped.recording.at("yaw").value, log.at("yaw").value) << "a heading may be any";
+  ASSERT_EQ(mapped.notes.size(), 1u);
+  EXPECT_EQ(mapped.notes[0].find("roll: 2 readings"), 0u) << mapped.notes[0];
 }
 
 /// A drive of 20 s that turns at a constant rate.

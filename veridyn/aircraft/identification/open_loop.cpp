@@ -179,9 +179,9 @@ std::string text_of(const OpenLoop& o, bool gusts, bool any_model) {
                                  : "no coefficient that moves a state was identified");
   const std::size_t diverged = estimation::diverged_windows(o);
   return fmt::format(
-      "{} windows of {:.0f} s at most ({:.0f} s forecast in all) integrated from deflections and thrust alone on data "
+      "{} window{} of {:.0f} s at most ({:.0f} s forecast in all) integrated from deflections and thrust alone on data "
       "that identification did not see; the first {:g} s of each give its initial state{}; {}{}{}",
-      o.windows.size(), o.options.duration_s, o.forecast_s, o.options.start_s,
+      o.windows.size(), o.windows.size() == 1 ? "" : "s", o.options.duration_s, o.forecast_s, o.options.start_s,
       o.options.offsets.empty() ? "" : " and the constants of its own", gusts ? "reconstructed gusts" : "calm air",
       o.driven.empty() ? ""
                        : fmt::format("; as measured, since no coefficient moves them: {}", fmt::join(o.driven, ", ")),

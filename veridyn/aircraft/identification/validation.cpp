@@ -114,9 +114,9 @@ class Predictor {
 std::string text_of(const Validation& v) {
   if (!v.available()) return "no validation: neither CL nor CY was identified, or there was no hold-out";
   return fmt::format(
-      "{} windows of {:.1f} s ({:.0f} s in all) flown by the model on data that identification did not see, each "
+      "{} window{} of {:.1f} s ({:.0f} s in all) flown by the model on data that identification did not see, each "
       "started from the reconstructed state{}{}",
-      v.windows, v.period_s, v.simulated_s,
+      v.windows, v.windows == 1 ? "" : "s", v.period_s, v.simulated_s,
       v.with_airspeed ? "" : "; airspeed was taken from the measurement, since CD was not identified",
       v.diverged > 0 ? fmt::format("; {} diverged and were cut", v.diverged) : "");
 }

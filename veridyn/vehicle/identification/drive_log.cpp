@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/recording/study_data.hpp"
 
@@ -116,6 +118,25 @@ recording::MappedRecording together(const std::vector<recording::MappedRecording
   return out;
 }
 
+/// Roll, pitch and sideslip within half a turn of zero: recorded from 0 to 360 deg, a little to the other side reads as
+/// nearly a whole turn.
+recording::MappedRecording with_angles_about_zero(recording::MappedRecording mapped) {
+  for (const char* name : {"roll", "pitch", "sideslip"}) {
+    const Channel* recorded = mapped.recording.find(name);
+    if (recorded == nullptr) continue;
+    const auto beyond = [](double angle) { return std::abs(angle) > kPi; };
+    const auto count = std::ranges::count_if(recorded->value, beyond);
+    if (count == 0) continue;
+    Channel channel = *recorded;
+    for (double& angle : channel.value)
+      if (beyond(angle)) angle = std::remainder(angle, 2.0 * kPi);
+    mapped.notes.push_back(
+        fmt::format("{}: {} readings of more than half a turn are taken as less than one the other way", name, count));
+    mapped.recording.set(std::move(channel));
+  }
+  return mapped;
+}
+
 }  // namespace
 
 std::span<const recording::StandardChannel> standard_drive_channels() {
@@ -179,7 +200,7 @@ recording::MappedRecording map_drive_channels(const Recording& recorded, const S
     mapped.notes.emplace_back("turned from frd (y right, z down) to flu (y left, z up)");
   }
   mapped.recording.frame = Frame::kFlu;
-  return mapped;
+  return with_angles_about_zero(std::move(mapped));
 }
 
 DriveLog read_drive_log(const StudyTable& data) {

@@ -236,9 +236,9 @@ std::string text_of(const DriveOpenLoop& o, OpenLoopUse use, const EstimatedDriv
                        o.times.start_s + estimation::kLeastForecast_s);
   const std::size_t diverged = estimation::diverged_windows(o);
   return fmt::format(
-      "{} windows of {:.0f} s at most ({:.0f} s forecast in all) integrated from {} alone on {}; the first {:g} s of "
+      "{} window{} of {:.0f} s at most ({:.0f} s forecast in all) integrated from {} alone on {}; the first {:g} s of "
       "each give its initial state{}{}",
-      o.windows.size(), o.times.duration_s, o.forecast_s, o.inputs,
+      o.windows.size(), o.windows.size() == 1 ? "" : "s", o.times.duration_s, o.forecast_s, o.inputs,
       use == OpenLoopUse::kHoldout ? "data that identification did not see" : "another drive than identification's",
       o.times.start_s, o.offsets.empty() ? "" : fmt::format(" and its own {}", fmt::join(o.offsets, ", ")),
       diverged > 0 ? fmt::format("; {} diverged and were cut", diverged) : "");
