@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 
+#include "tests/support/ros_writer.hpp"
 #include "tests/support/synthetic_logs.hpp"
 #include "tests/support/tlog_writer.hpp"
 #include "tests/vehicle/tyre/small_tir.hpp"
@@ -26,6 +27,21 @@ int main(int count, char** arguments) {
     write("dataflash_text", veridyn::testing::small_dataflash_text());
     write("ulog", veridyn::testing::small_ulog());
     write("tlog", veridyn::testing::small_tlog());
+    write("mcap", veridyn::testing::tiny_mcap());
+    write("mcap", veridyn::testing::small_mcap().substr(0, 30'000), "cut");
+    veridyn::make_folder(folder / "bag_database");
+    veridyn::testing::write_bag_database(
+        folder / "bag_database" / "small",
+        {{1, "/imu", "sensor_msgs/msg/Imu"}, {2, "/own", "a/msg/Own", "int8[] a\nstring[2] name\nfloat32[] b\n"}},
+        {{1, 5, veridyn::testing::imu_message(5, 0.1, {1, 2, 3}, {4, 5, 6})},
+         {2, 6,
+          veridyn::testing::MessageWriter()
+              .number(std::uint32_t{1})
+              .number('a')
+              .text("x")
+              .text("y")
+              .sequence({})
+              .bytes()}});
     write("csv", veridyn::testing::small_csv());
     write("csv", "# t p (deg/s) V\n0 1 20\n20\t2 21\n40 3 22\n", "blanks");
     write("csv", "Zeit;V;V\ns;km/h;\n0,0;1,5;2\n0,1;2,5;3\n", "decimal_comma");

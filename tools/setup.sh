@@ -4,7 +4,7 @@ set -euo pipefail
 
 packages=(
   g++ cmake ninja-build ccache pkg-config git
-  libeigen3-dev libboost-dev libceres-dev libtbb-dev libmatio-dev zlib1g-dev libzip-dev libtomlplusplus-dev nlohmann-json3-dev
+  libeigen3-dev libboost-dev libceres-dev libtbb-dev libmatio-dev zlib1g-dev libzip-dev liblz4-dev libzstd-dev libsqlite3-dev libtomlplusplus-dev nlohmann-json3-dev
   libcli11-dev libfmt-dev libpugixml-dev libmuparser-dev libgtest-dev libgmock-dev libbenchmark-dev libsimbody-dev coinor-libipopt-dev
   libasio-dev libevdev-dev libcpp-httplib-dev libopencv-core-dev libopencv-imgproc-dev libopencv-videoio-dev
   clang-14 clang-format-14 clang-format clang-tidy-14 clang-tidy libclang-rt-14-dev

@@ -3,11 +3,15 @@
 #include <benchmark/benchmark.h>
 
 #include <cstring>
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "tests/support/ros_writer.hpp"
 #include "tests/support/synthetic_logs.hpp"
 #include "veridyn/io/dataflash/dataflash.hpp"
+#include "veridyn/io/ros/bag_database.hpp"
+#include "veridyn/io/ros/mcap.hpp"
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/io/ulog/ulog.hpp"
 
@@ -68,6 +72,32 @@ void ReadULog(benchmark::State& state) {
   count(state, bytes);
 }
 
+/// Bytes of the messages per second, whatever the file takes.
+void read_mcap_by(benchmark::State& state, const char* compression) {
+  const std::string plain = veridyn::testing::synthetic_mcap(kMegabytes, "");
+  const std::string bytes = veridyn::testing::synthetic_mcap(kMegabytes, compression);
+  for (auto _ : state) benchmark::DoNotOptimize(veridyn::io::read_mcap(bytes, "bench"));
+  count(state, plain);
+}
+
+void ReadMcap(benchmark::State& state) { read_mcap_by(state, ""); }
+void ReadMcapLz4(benchmark::State& state) { read_mcap_by(state, "lz4"); }
+void ReadMcapZstd(benchmark::State& state) { read_mcap_by(state, "zstd"); }
+
+/// From a file, of which the pages lie in memory already.
+void ReadBagDatabase(benchmark::State& state) {
+  const std::filesystem::path path = std::filesystem::temp_directory_path() / "veridyn_read_bench.db3";
+  std::vector<veridyn::testing::BagMessage> messages;
+  for (int i = 0; i < 300'000; ++i)
+    messages.push_back({1, 5'000'000LL * i, veridyn::testing::imu_message(5'000'000LL * i, 0.1, {1, 2, 3}, {4, 5, 6})});
+  veridyn::testing::write_bag_database(path, {{1, "/imu", "sensor_msgs/msg/Imu"}}, messages);
+  messages.clear();
+  for (auto _ : state) benchmark::DoNotOptimize(veridyn::io::read_bag_database(path));
+  state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations()) *
+                          static_cast<std::int64_t>(std::filesystem::file_size(path)));
+  std::filesystem::remove(path);
+}
+
 void ReadCsv(benchmark::State& state) {
   const std::string& bytes = csv();
   for (auto _ : state) benchmark::DoNotOptimize(veridyn::io::read_csv(bytes, "bench"));
@@ -86,6 +116,10 @@ BENCHMARK(ReadDataFlash)->Unit(benchmark::kMillisecond);
 BENCHMARK(DataFlashToRecording)->Unit(benchmark::kMillisecond);
 BENCHMARK(CopyULog)->Unit(benchmark::kMillisecond);
 BENCHMARK(ReadULog)->Unit(benchmark::kMillisecond);
+BENCHMARK(ReadMcap)->Unit(benchmark::kMillisecond);
+BENCHMARK(ReadMcapLz4)->Unit(benchmark::kMillisecond);
+BENCHMARK(ReadMcapZstd)->Unit(benchmark::kMillisecond);
+BENCHMARK(ReadBagDatabase)->Unit(benchmark::kMillisecond);
 BENCHMARK(ReadCsv)->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -2,10 +2,12 @@
 #include <functional>
 
 #include "tests/io/support.hpp"
+#include "tests/support/ros_writer.hpp"
 #include "tests/support/synthetic_logs.hpp"
 #include "veridyn/io/dataflash/dataflash.hpp"
 #include "veridyn/io/dataflash/dataflash_text.hpp"
 #include "veridyn/io/matlab/mat.hpp"
+#include "veridyn/io/ros/mcap.hpp"
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/io/ulog/ulog.hpp"
 
@@ -95,6 +97,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Reader{"DataFlashText", testing::small_dataflash_text,
                              [](std::string_view b) { return read_dataflash_text(b, "x"); }, true},
                       Reader{"ULog", testing::small_ulog, [](std::string_view b) { return read_ulog(b, "x"); }, true},
+                      Reader{"Mcap", testing::tiny_mcap, [](std::string_view b) { return read_mcap(b, "x"); }, true},
                       Reader{"Mat", testing::small_mat, [](std::string_view b) { return read_mat(b, "x"); }, true},
                       Reader{"Csv", testing::small_csv, [](std::string_view b) { return read_csv(b, "x"); }, true}),
     [](const auto& instance) { return std::string(instance.param.name); });

@@ -18,9 +18,8 @@ TEST(FormatsNotRead, AreNamedWithWhatToDo) {
       {"(1436509052.249713) vcan0 044#2A366C2BBA\n", "a CAN log of candump"},
       {"date Fri May 3 12:00:00 2024\nbase hex  timestamps absolute\n", "a Vector ASC log"},
       {"LOGG\x90", "a Vector BLF log"},
-      {"\x89MCAP0\r\n", "an MCAP recording"},
-      {"#ROSBAG V2.0\n", "a ROS bag"},
-      {std::string("SQLite format 3\0", 16), "an SQLite database"},
+      {"#ROSBAG V2.0\n", "a bag of ROS 1"},
+      {"\x28\xb5\x2f\xfd\x04", "compressed by Zstandard"},
       {std::string("PK\x03\x04\x14\0\x06\0[Content_Types].xml", 27), "an Excel workbook"}};
   for (const auto& [content, name] : kFiles) {
     const auto path = folder.write("drive.dat", content);

@@ -44,8 +44,8 @@ TEST(ReadLog, RefusesWhatItCannotReadInOneSentence) {
   EXPECT_EQ(message_of([&] { (void)read_log(folder.write("zero.bin", std::string(5000, '\0'))); }),
             place +
                 "/zero.bin: not a known log (its name promises ArduPilot DataFlash, its content is not); known are "
-                "ArduPilot DataFlash (.bin, .log), PX4 ULog (.ulg), MAVLink telemetry (.tlog), MATLAB (.mat), OpenSim "
-                "storage (.sto, .mot), "
+                "ArduPilot DataFlash (.bin, .log), PX4 ULog (.ulg), MAVLink telemetry (.tlog), MCAP (.mcap), "
+                "ROS 2 bags (.db3, or their folder), MATLAB (.mat), OpenSim storage (.sto, .mot), "
                 "NumPy arrays (.npz, or folders of .npy), telemetry packets of games and CSV");
   EXPECT_THAT(
       message_of([&] { (void)read_log(folder.write("picture.png", std::string("\x89PNG\r\n\x1a\n\0\0", 10))); }),

@@ -16,6 +16,9 @@
 #include "veridyn/io/mavlink/tlog.hpp"
 #include "veridyn/io/opensim/storage.hpp"
 #include "veridyn/io/packets/packet_log.hpp"
+#include "veridyn/io/ros/bag_database.hpp"
+#include "veridyn/io/ros/bag_folder.hpp"
+#include "veridyn/io/ros/mcap.hpp"
 #include "veridyn/io/tables/csv_folder.hpp"
 #include "veridyn/io/tables/npy.hpp"
 #include "veridyn/io/tables/npz.hpp"
@@ -24,7 +27,20 @@
 namespace veridyn::io {
 namespace {
 
-enum class Format { kUnknown, kDataFlash, kDataFlashText, kULog, kMat, kStorage, kNpz, kPackets, kCsv, kTlog };
+enum class Format {
+  kUnknown,
+  kDataFlash,
+  kDataFlashText,
+  kULog,
+  kMat,
+  kStorage,
+  kNpz,
+  kPackets,
+  kCsv,
+  kTlog,
+  kMcap,
+  kBag
+};
 
 Format by_extension(const std::filesystem::path& path) {
   const std::string extension = lower(path.extension().string());
@@ -32,6 +48,8 @@ Format by_extension(const std::filesystem::path& path) {
   if (extension == ".log") return Format::kDataFlashText;
   if (extension == ".ulg" || extension == ".ulog") return Format::kULog;
   if (extension == ".tlog") return Format::kTlog;
+  if (extension == ".mcap") return Format::kMcap;
+  if (extension == ".db3") return Format::kBag;
   if (extension == ".mat") return Format::kMat;
   if (extension == ".npz") return Format::kNpz;
   if (extension == ".sto" || extension == ".mot") return Format::kStorage;
@@ -41,6 +59,8 @@ Format by_extension(const std::filesystem::path& path) {
 
 Format by_content(std::string_view bytes) {
   if (is_ulog(bytes)) return Format::kULog;
+  if (is_mcap(bytes)) return Format::kMcap;
+  if (is_sqlite(bytes)) return Format::kBag;
   if (is_mat(bytes)) return Format::kMat;
   if (is_npz(bytes)) return Format::kNpz;
   if (is_tlog(bytes)) return Format::kTlog;
@@ -69,6 +89,10 @@ const char* name_of(Format format) {
       return "PX4 ULog";
     case Format::kTlog:
       return "MAVLink telemetry log";
+    case Format::kMcap:
+      return "MCAP";
+    case Format::kBag:
+      return "ROS 2 bag";
     case Format::kMat:
       return "MATLAB";
     case Format::kStorage:
@@ -91,8 +115,10 @@ namespace {
 
 /// All of a file.
 Log read_whole(const std::filesystem::path& path, const ReadOptions& options) {
-  if (std::error_code error; std::filesystem::is_directory(path, error))
+  if (std::error_code error; std::filesystem::is_directory(path, error)) {
+    if (is_bag_folder(path)) return read_bag_folder(path);
     return is_csv_folder(path) ? read_csv_folder(path, options.csv) : read_npy_folder(path);
+  }
   const MappedFile file(path);
   const std::string_view bytes = file.bytes();
   if (options.packet) return packet_log(*options.packet, bytes, path.string());
@@ -110,7 +136,8 @@ Log read_whole(const std::filesystem::path& path, const ReadOptions& options) {
     throw InputError(
         path.string(),
         fmt::format("not a known log{}; known are ArduPilot DataFlash (.bin, .log), PX4 ULog (.ulg), MAVLink telemetry "
-                    "(.tlog), MATLAB (.mat), OpenSim storage (.sto, .mot), NumPy arrays (.npz, or folders of .npy), "
+                    "(.tlog), MCAP (.mcap), ROS 2 bags (.db3, or their folder), MATLAB (.mat), OpenSim storage (.sto, "
+                    ".mot), NumPy arrays (.npz, or folders of .npy), "
                     "telemetry packets of games "
                     "and CSV",
                     claim));
@@ -128,6 +155,12 @@ Log read_whole(const std::filesystem::path& path, const ReadOptions& options) {
       break;
     case Format::kTlog:
       log = read_tlog(bytes, path.string());
+      break;
+    case Format::kMcap:
+      log = read_mcap(bytes, path.string());
+      break;
+    case Format::kBag:
+      log = read_bag_database(path);
       break;
     case Format::kMat:
       log = read_mat_file(path, options.csv);

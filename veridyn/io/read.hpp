@@ -18,8 +18,8 @@ struct ReadOptions {
 };
 
 /// Reads a log of any known format: ArduPilot DataFlash (.bin) and its text form (.log), PX4 ULog (.ulg), telemetry
-/// logs of MAVLink (.tlog), MATLAB (.mat), OpenSim storage (.sto, .mot), telemetry packets of games, CSV, and folders
-/// of CSV or of NumPy arrays
+/// logs of MAVLink (.tlog), MCAP (.mcap), bags of ROS 2 (.db3, or their folder), MATLAB (.mat), OpenSim storage (.sto,
+/// .mot), telemetry packets of games, CSV, and folders of CSV or of NumPy arrays
 /// (`npy.hpp`). The content decides; the name's extension only where the content does not decide, and a name that
 /// promises another format than the content is noted in the damage. Where pauses or restarts part it, the parts are
 /// noted, and `csv.part` reads one (`choose_part`).
