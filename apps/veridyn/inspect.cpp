@@ -9,6 +9,7 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/read.hpp"
 #include "veridyn/recording/drive_axis_check.hpp"
+#include "veridyn/recording/ros_topics.hpp"
 #include "veridyn/recording/study_data.hpp"
 #include "veridyn/vehicle/identification/drive_log.hpp"
 
@@ -100,6 +101,17 @@ std::string axis_section(const recording::MappedRecording& mapped, Summary& summ
   return text;
 }
 
+/// What the log itself says, else the frame, which distinguishes vehicles from aircraft but in recordings of ROS, where
+/// an airspeed does; of a table that does not say it, its speed.
+bool is_of_vehicle(const Recording& recording) {
+  if (const auto said = recording.information.find("vehicle"); said != recording.information.end())
+    return said->second == "ground rover";
+  if (recording::is_ros(recording))
+    return !aircraft::map_channels(recording, StudyTable("data.map"), {}).recording.has("airspeed");
+  return recording.frame == Frame::kFlu ||
+         (recording.find("speed") != nullptr && recording.find("airspeed") == nullptr);
+}
+
 /// The drive of a study, with its `[data.map]`.
 int inspect_drive(const Arguments& arguments, const std::string& file) {
   const Study study = Study::load(file, arguments.common.overrides);
@@ -133,9 +145,7 @@ int inspect(const Arguments& arguments) {
   const io::LogDamage damage = log.damage;
   const std::size_t topics = log.topics.size();
   const Recording recording = io::to_recording(std::move(log));
-  // The frame distinguishes vehicles from aircraft; a table that does not say it, its speed.
-  const bool vehicle =
-      recording.frame == Frame::kFlu || (recording.find("speed") != nullptr && recording.find("airspeed") == nullptr);
+  const bool vehicle = is_of_vehicle(recording);
   const recording::MappedRecording mapped = vehicle ? vehicle::map_drive_channels(recording, StudyTable("data.map"))
                                                     : aircraft::map_channels(recording, StudyTable("data.map"), {});
   const TimeSpan span = recording.span();
@@ -203,7 +213,8 @@ Command inspect_command() {
       .summary = "what a log or a model file holds: channels, rates, gaps, damage; bodies, joints, muscles",
       .arguments =
           {{.name = "FILE",
-            .help = "a study whose [data] names a drive; ArduPilot .bin or .log, PX4 .ulg, MATLAB .mat, OpenSim .sto "
+            .help = "a study whose [data] names a drive; ArduPilot .bin or .log, PX4 .ulg, MCAP and ROS 2 bags, MATLAB "
+                    ".mat, OpenSim .sto "
                     "or .mot, CSV, a folder of NumPy "
                     "arrays; OpenSim model .osim, or the built-in model 'arm'; a folder of .osim models "
                     "gives a table: loads, simulates, what is missing",

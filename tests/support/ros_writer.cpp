@@ -271,7 +271,8 @@ std::string small_mcap() {
     for (int i = 50 * chunk; i < 50 * (chunk + 1); ++i) {
       const std::int64_t ns = kRosBegin_ns + 20'000'000LL * i;
       const double t = 0.02 * i, rate = 0.3 * std::sin(2.0 * t), yaw = 0.15 * (1.0 - std::cos(2.0 * t));
-      log.message(1, ns + 3'000'000, imu_message(ns, yaw, {0.001 * i, -0.002 * i, rate}, {0.1 * t, 10.0 * rate, 9.81}));
+      log.message(1, ns + 3'000'000,
+                  imu_message(ns, yaw, {0.001 * i, -0.002 * i, rate}, {0.1 * t, 10.0 * rate, 9.81 + 0.001 * (i % 3)}));
       log.message(2, ns + 5'000'000, odometry_message(ns, 10.0 * t, 0.5 * t, yaw, 10.0 + t, rate));
       if (i % 10 == 0)
         log.message(3, ns + 60'000'000,

@@ -89,10 +89,11 @@ TEST(Mcap, ReadsMessagesOfRos1) {
 TEST(Mcap, IsReadAsFarAsItGoesWhereItIsCutOff) {
   const std::string whole = testing::small_mcap();
   std::size_t before = 0;
-  for (const double share : {0.2, 0.5, 0.62, 0.68, 0.75, 0.8, 1.0}) {
+  // Three quarters of the file are a chunk without compression, which can be read in part; then come two others.
+  for (const double share : {0.2, 0.5, 0.7, 0.8, 0.9, 1.0}) {
     const auto size = static_cast<std::size_t>(share * static_cast<double>(whole.size()));
     const Log log = read_mcap(std::string_view(whole).substr(0, size), "x");
-    EXPECT_GT(log.count("imu/data"), before) << share << ": the last chunk is read in part";
+    EXPECT_GT(log.count("imu/data"), before) << share;
     before = log.count("imu/data");
   }
 }

@@ -138,6 +138,40 @@ TEST(RosLog, GoesOnWhereTheLogsClockRestarts) {
   EXPECT_THAT(log.restarts, ElementsAre(::testing::DoubleNear(1.98 + kRestartPause_s, 1e-6)));
 }
 
+// As converters write them.
+TEST(RosLog, TakesTopicsThatStandOneAfterTheOther) {
+  RosLog messages;
+  for (const char* name : {"a", "b"}) {
+    const std::size_t topic = messages.topic(standard(name, "std_msgs/msg/Float64"));
+    for (int i = 0; i < 200; ++i)
+      messages.add(topic, 500LL * i * kMillisecond, MessageWriter().number(1.0 * i).bytes());
+  }
+  const Log log = finished(messages);
+  EXPECT_TRUE(log.restarts.empty());
+  EXPECT_EQ(*log.find("a")->time, *log.find("b")->time);
+}
+
+TEST(RosLog, CallsWhatPx4SendsAsItsULogsDo) {
+  RosLog messages;
+  const std::size_t attitude = messages.topic({"/fmu/out/vehicle_attitude_v1", "px4_msgs/msg/VehicleAttitude", "cdr",
+                                               "ros2msg", "uint64 timestamp\nfloat32[4] q\n"}),
+                    pressure = messages.topic({"/fmu/out/vehicle_air_data", "px4_msgs/msg/VehicleAirData", "cdr",
+                                               "ros2msg", "uint64 timestamp\nfloat32 baro_pressure_pa\n"});
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    const std::uint64_t us = 7'000'000 + 4000 * i;
+    messages.add(attitude, kRosBegin_ns + static_cast<Nanoseconds>(4 * i + i % 2) * kMillisecond,
+                 MessageWriter().numbers(us, 1.0F, 0.1F * static_cast<float>(i), 0.0F, 0.0F).bytes());
+    messages.add(pressure, kRosBegin_ns + static_cast<Nanoseconds>(4 * i + i % 2) * kMillisecond,
+                 MessageWriter().numbers(us, 95000.0F + static_cast<float>(i)).bytes());
+  }
+  const Log log = finished(messages);
+  EXPECT_EQ(log.frame, Frame::kFrd);
+  const Recording recording = to_recording(log);
+  EXPECT_NEAR(recording.at("vehicle_attitude.q[1]").value[3], 0.3, 1e-7);
+  EXPECT_NEAR(recording.at("vehicle_attitude.q[1]").times()[3], 0.012, 1e-9) << "on the log's clock";
+  EXPECT_EQ(recording.at("vehicle_air_data.baro_pressure_pa").recorded_unit, "Pa");
+}
+
 TEST(OneLine, MakesTextsFitToBePrinted) { EXPECT_EQ(one_line("a\nb\tc\x01\xff", 5), "a?b?c"); }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "veridyn/aircraft/sensors/channel_rules.hpp"
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/recording/ros_topics.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -63,7 +64,8 @@ MappedRecording map_channels(const Recording& log, const StudyTable& map, const 
   MappedRecording mapped;
   mapped.recording = recording::without_channels(log);
   mapped.recording.frame = Frame::kFrd;
-  if (log.frame == Frame::kFlu) {
+  const bool ros = recording::is_ros(log);
+  if (log.frame == Frame::kFlu && !ros) {
     throw InputError(log.source, "its frame is flu (z up), an aircraft recording is frd (z down): convert it first");
   }
   mapped.log_kind = "study";
@@ -78,6 +80,10 @@ MappedRecording map_channels(const Recording& log, const StudyTable& map, const 
   } else if (internal::is_mavlink(log)) {
     mapped.log_kind = "MAVLink";
     internal::map_mavlink(builder, throws);
+  }
+  if (ros) {
+    if (mapped.log_kind != "PX4") mapped.log_kind = "ROS";
+    internal::map_ros(builder);
   }
   mapped = recording::with_recognised_channels(std::move(mapped), log, standard_channels(), channel_aliases(), map);
   mapped = recording::with_channel_map(std::move(mapped), log, standard_channels(), map);

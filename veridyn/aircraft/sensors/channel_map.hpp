@@ -27,7 +27,8 @@ struct SurfaceThrows {
 /// Gives the channels of a log their standard names (the list is in docs/aircraft.md).
 ///
 /// ArduPilot, PX4 and MAVLink logs are recognised by their messages and mapped through the tables in
-/// `ardupilot_map.cpp`, `px4_map.cpp` and `mavlink_map.cpp`; channels that already bear standard names are kept; keys
+/// `ardupilot_map.cpp`, `px4_map.cpp` and `mavlink_map.cpp`, recordings of ROS by the types of their topics
+/// (`ros_map.cpp`); channels that already bear standard names are kept; keys
 /// of `map` (the study's `[data.map]`, see recording::with_channel_map) come last and win.
 ///
 /// What these leave is taken by the names of the literature (`channel_aliases`) where the unit is known.

@@ -57,6 +57,9 @@ void map_px4(MapBuilder& builder, const SurfaceThrows& throws);
 /// Adds the channels of a telemetry log of MAVLink.
 void map_mavlink(MapBuilder& builder, const SurfaceThrows& throws);
 
+/// Adds the channels of a recording of ROS, turned from forward, left, up and east, north, up.
+void map_ros(MapBuilder& builder);
+
 /// Where a log of ArduPilot has the pulses of its servos: `RCOU.C1`, or `SERVO_OUTPUT_RAW.servo1_raw`.
 enum class ServoOutputs { kDataflash, kMavlink };
 /// Surfaces and throttle from servo pulses, by the SERVOn_FUNCTION of the log's parameters. Without these, usual servos

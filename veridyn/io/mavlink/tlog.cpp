@@ -247,6 +247,7 @@ class TlogReader {
         };
         if (byte("autopilot") == kNoAutopilot) continue;
         log_.information["autopilot"] = autopilot_name(byte("autopilot"));
+        if (const char* const vehicle = vehicle_name(byte("type"))) log_.information["vehicle"] = vehicle;
         const int now = (byte("base_mode") & kArmed) != 0 ? 1 : 0;
         if (now != armed) log_.events.push_back({time, "armed", now == 1 ? "armed" : "disarmed"});
         armed = now;
@@ -256,6 +257,12 @@ class TlogReader {
 
   static std::string autopilot_name(unsigned autopilot) {
     return autopilot == 3 ? "ArduPilot" : autopilot == 12 ? "PX4" : fmt::format("MAV_AUTOPILOT {}", autopilot);
+  }
+
+  /// Of MAV_TYPE what matters here; null for others.
+  static const char* vehicle_name(unsigned type) {
+    constexpr unsigned kFixedWing = 1, kGroundRover = 10, kBoat = 11;
+    return type == kFixedWing ? "fixed wing" : type == kGroundRover ? "ground rover" : type == kBoat ? "boat" : nullptr;
   }
 
   /// One topic for each instance.

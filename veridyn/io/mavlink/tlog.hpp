@@ -24,7 +24,8 @@ namespace veridyn::io {
 ///   bursts. It is moved by the least delay that was seen, so that 0 is when the first packet was received. A message
 ///   without a time has that of the sender's message before it, plus what has passed since then.
 /// - Where a sender restarts (its clock goes back by more than 10 s) its times go on after what came before.
-/// - Parameters are those of PARAM_VALUE; events come from HEARTBEAT (armed) and STATUSTEXT.
+/// - Parameters are those of PARAM_VALUE; events come from HEARTBEAT (armed) and STATUSTEXT, `vehicle` of the
+///   information ("fixed wing", "ground rover") too.
 /// @throws InputError when it is none.
 [[nodiscard]] Log read_tlog(std::string_view bytes, std::string source);
 

@@ -200,7 +200,6 @@ Log empty_log(std::string source) {
 
 Log finished(Log log, RosLog& messages) {
   messages.finish(log);
-  log.frame = Frame::kFlu;
   internal::finish(log);
   return log;
 }

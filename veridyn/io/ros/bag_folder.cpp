@@ -104,7 +104,6 @@ Log read_bag_folder(const std::filesystem::path& folder) {
   }
   if (read == 0) throw first ? *first : InputError(log.source, "holds no files of a bag");
   messages.finish(log);
-  log.frame = Frame::kFlu;
   internal::finish(log);
   return log;
 }

@@ -83,8 +83,7 @@ std::uint32_t checksum(std::string_view bytes) {
 
 class McapReader {
  public:
-  McapReader(std::string_view bytes, RosLog& messages, Log& log)
-      : bytes_(bytes), messages_(messages), log_(log), topics_(1U << 16U, kUnknown) {}
+  McapReader(std::string_view bytes, RosLog& messages, Log& log) : bytes_(bytes), messages_(messages), log_(log) {}
 
   void run() {
     const std::uint64_t before = messages_.messages();
@@ -256,6 +255,7 @@ class McapReader {
   void take_channel(std::string_view body) {
     RecordFields fields(body);
     const auto id = fields.number<std::uint16_t>();
+    if (topics_.size() <= id) topics_.resize(id + std::size_t{1}, kUnknown);
     if (topics_[id] != kUnknown) return;
     const auto schema_id = fields.number<std::uint16_t>();
     RosTopic topic;
@@ -271,7 +271,8 @@ class McapReader {
   }
 
   void take_message(std::string_view body) {
-    const std::size_t topic = topics_[little<std::uint16_t>(body.data())];
+    const auto id = little<std::uint16_t>(body.data());
+    const std::size_t topic = id < topics_.size() ? topics_[id] : kUnknown;
     if (topic == kUnknown) {
       ++unknown_channels_;
       ++log_.damage.records_lost;
@@ -343,7 +344,6 @@ Log read_mcap(std::string_view bytes, std::string source) {
   internal::RosLog messages;
   internal::add_mcap(bytes, messages, log);
   messages.finish(log);
-  log.frame = Frame::kFlu;
   internal::finish(log);
   return log;
 }

@@ -14,6 +14,7 @@
 #include "veridyn/io/ros/message_clock.hpp"
 #include "veridyn/io/ros/message_cursor.hpp"
 #include "veridyn/io/ros/message_definition.hpp"
+#include "veridyn/io/ulog/px4_units.hpp"
 
 namespace veridyn::io::internal {
 namespace {
@@ -96,6 +97,23 @@ void blank_absent(std::string_view type, std::vector<LogField>& fields,
   }
 }
 
+bool is_px4_type(std::string_view type) { return type.starts_with("px4_msgs/"); }
+
+/// Without the slash ahead. What PX4 sends has the names of its ULogs: "vehicle_attitude" of
+/// "/fmu/out/vehicle_attitude_v1".
+std::string topic_name(const RosTopic& topic) {
+  std::string name = one_line(std::string_view(topic.name).substr(topic.name.starts_with('/') ? 1 : 0));
+  constexpr std::string_view kSent = "fmu/out/";
+  const std::size_t sent = name.rfind(kSent);
+  if (!is_px4_type(topic.type) || sent == std::string::npos) return name;
+  name.erase(0, sent + kSent.size());
+  const std::size_t version = name.rfind("_v");
+  if (version != std::string::npos && version + 2 < name.size() &&
+      name.find_first_not_of("0123456789", version + 2) == std::string::npos)
+    name.resize(version);
+  return name;
+}
+
 std::string listed(const std::vector<std::string>& all) {
   const std::size_t shown = std::min(all.size(), kListed);
   std::string text = fmt::format("{}", fmt::join(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
@@ -118,7 +136,7 @@ std::size_t RosLog::topic(const RosTopic& topic) {
   if (entries_.size() >= kMostTopics) return kNoTopic;
   Entry entry;
   entry.described = topic;
-  entry.name = one_line(std::string_view(topic.name).substr(topic.name.starts_with('/') ? 1 : 0));
+  entry.name = topic_name(topic);
   const bool ros1 = topic.encoding == "ros1";
   if (topic.encoding != "cdr" && !ros1) {
     entry.obstacle = fmt::format("its messages are in {}", one_line(topic.encoding, 20));
@@ -141,6 +159,7 @@ void RosLog::add(std::size_t topic, Nanoseconds logged, std::string_view payload
   Entry& entry = entries_[topic];
   ++entry.messages;
   if (entry.table) {
+    entry.restarts.add(seconds(logged), place);
     if (!entry.table->add(payload, logged, place)) ++entry.lost;
   } else if (entry.transforms) {
     take_transforms(payload, entry.described.encoding == "ros1" ? RosEncoding::kRos1 : RosEncoding::kCdr);
@@ -169,10 +188,18 @@ void RosLog::take_transforms(std::string_view payload, RosEncoding encoding) {
 
 void RosLog::finish(Log& log) {
   restarts_.finish();
+  // Files may hold one topic after the other: the clock goes back only where it does so within a topic.
+  const bool restarts = std::ranges::any_of(entries_, [](Entry& entry) {
+    entry.restarts.finish();
+    return entry.restarts.shift_at(UINT64_MAX) != 0.0;
+  });
+  if (!restarts) restarts_ = {};
+  log.frame = Frame::kFrd;  // PX4's own
   for (Entry& entry : entries_) {
     log.damage.records_lost += entry.lost;
     if (!entry.table || entry.table->rows() == 0) continue;
     describe(entry, log);
+    if (!is_px4_type(entry.described.type)) log.frame = Frame::kFlu;
     log.topics.push_back(made_topic(entry, log));
   }
   log.information.insert(transforms_.begin(), transforms_.end());
@@ -217,6 +244,13 @@ LogTopic RosLog::made_topic(Entry& entry, Log& log) {
   std::map<std::string, std::string> constants;
   topic.fields = table.take_fields(constants);
   blank_absent(plain_ros_type(entry.described.type), topic.fields, constants);
+  if (is_px4_type(entry.described.type)) {
+    for (LogField& field : topic.fields) {
+      const Px4Unit known = px4_unit(topic.name, field.name.substr(0, field.name.find('[')));
+      field.unit = known.unit;
+      field.scale = known.scale;
+    }
+  }
   for (const auto& [name, value] : constants) log.information.emplace(fmt::format("{}.{}", entry.name, name), value);
   if (!ordered.row.empty() || ordered.time.empty())
     for (LogField& field : topic.fields) field.values = field.values.picked(ordered.row);

@@ -33,6 +33,8 @@ struct RosTopic {
 /// A topic's definition, or where it has none a standard message's, says what its messages are. Its fields are named
 /// `linear_acceleration.x`, elements of arrays `ranges[3]`, of a sequence next to `name` (JointState) by these:
 /// `position[left_wheel]`. Texts and sequences of messages make no columns, nor do sequences of more than 64 numbers.
+/// Topics that PX4 sends (px4_msgs, /fmu/out/...) have the names and units of its ULogs. The frame is that of REP 103,
+/// flu, but of a recording of nothing else than these.
 /// In `Log::information` stand `type of TOPIC`, `frame of TOPIC`, `child frame of TOPIC`, `transform PARENT to CHILD`
 /// of /tf_static (translation, quaternion x y z w), covariances that never change, and `date` (UTC) of the beginning.
 class RosLog {
@@ -56,6 +58,7 @@ class RosLog {
     bool transforms = false;  ///< /tf_static
     std::string obstacle;     ///< why it cannot be decoded
     std::uint64_t messages = 0, lost = 0;
+    ClockRestarts restarts;  ///< of this topic alone
   };
 
   void take_transforms(std::string_view payload, RosEncoding encoding);

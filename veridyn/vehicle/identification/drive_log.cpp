@@ -10,6 +10,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/recording/study_data.hpp"
+#include "veridyn/vehicle/identification/drive_maps.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -180,6 +181,8 @@ recording::MappedRecording map_drive_channels(const Recording& recorded, const S
   for (recording::ChannelOrigin& origin : mapped.origins)
     if (!recorded.has(origin.source))
       origin.source = "wheel_speed_" + origin.source.substr(origin.source.rfind('_') + 1);
+  mapped = internal::with_autopilot_channels(std::move(mapped), log);
+  mapped = internal::with_ros_channels(std::move(mapped), log);
   mapped = recording::with_recognised_channels(std::move(mapped), log, standard_drive_channels(),
                                                drive_channel_aliases(), map);
   mapped = recording::with_channel_map(std::move(mapped), log, standard_drive_channels(), map);

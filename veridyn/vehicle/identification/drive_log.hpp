@@ -31,7 +31,8 @@ struct DriveLog {
   std::vector<std::filesystem::path> inputs;
 };
 
-/// Gives the channels of a log their standard names and turns them into flu.
+/// Gives the channels of a log their standard names and turns them into flu: those of telemetry logs of MAVLink and of
+/// recordings of ROS by their messages, others by their names and by `map`, which wins.
 ///
 /// `frame` is that of the log, "flu" or "frd" (then y, z, yaw, steering and course change their sign);
 /// empty: the frame of the log itself, flu with a note where it has none.
