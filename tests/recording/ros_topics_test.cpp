@@ -38,6 +38,14 @@ TEST(RosTopics, TurnFramesIntoBaseLinkAlongTheTree) {
   EXPECT_FALSE(topics.R_base_from("other"));
 }
 
+TEST(RosTopics, LayChannelsOfATopicOnTheSameStamps) {
+  const TimeBase whole = make_time_base({0.0, 0.1, 0.2}), part = make_time_base({0.0, 0.2});
+  const Channel a = make_channel("a", "1", whole, {1, 2, 3}), b = make_channel("b", "1", part, {5, 7});
+  EXPECT_EQ(at_stamps_of(a, a), a.value);
+  EXPECT_THAT(at_stamps_of(b, a), ::testing::ElementsAre(5.0, ::testing::DoubleNear(6.0, 1e-12), 7.0));
+  EXPECT_THAT(at_stamps_of(a, b), ::testing::ElementsAre(1.0, 3.0));
+}
+
 TEST(RosTopics, StandTransformsInACircle) {
   RosRecording made(1);
   made.transform("a", "b", "0 0 0 0 0 0 1").transform("b", "a", "0 0 0 0 0 0 1").transform("x", "y", "no numbers");

@@ -77,15 +77,17 @@ class MotionFinder {
 
   /// A vector of a topic, turned. All three components must be there; they may stand still.
   std::optional<RosVector> vector(const RosTopic& topic, const std::string& field, const Eigen::Matrix3d& R) const {
-    std::array<const Channel*, 3> from{};
+    RosVector made{.time = nullptr, .value = {}, .source = topic.name + field, .note = {}};
+    const Channel* first = nullptr;
     for (std::size_t i = 0; i < 3; ++i) {
-      from[i] = topics_.log().find(topic.name + field + std::string(kAxes[i]));
-      if (from[i] == nullptr || from[i]->empty()) return std::nullopt;
+      const Channel* const from = topics_.log().find(topic.name + field + std::string(kAxes[i]));
+      if (from == nullptr || from->empty()) return std::nullopt;
+      if (first == nullptr) first = from;
+      made.value[i] = at_stamps_of(*from, *first);
     }
-    RosVector made{.time = from[0]->time, .value = {}, .source = topic.name + field, .note = {}};
-    for (auto& values : made.value) values.resize(from[0]->size());
-    for (std::size_t k = 0; k < from[0]->size(); ++k) {
-      const Eigen::Vector3d v = R * Eigen::Vector3d(from[0]->value[k], from[1]->value[k], from[2]->value[k]);
+    made.time = first->time;
+    for (std::size_t k = 0; k < first->size(); ++k) {
+      const Eigen::Vector3d v = R * Eigen::Vector3d(made.value[0][k], made.value[1][k], made.value[2][k]);
       for (Eigen::Index i = 0; i < 3; ++i) made.value[static_cast<std::size_t>(i)][k] = v(i);
     }
     return made;
@@ -93,19 +95,22 @@ class MotionFinder {
 
   std::optional<Attitude> attitude(const RosTopic& topic, const std::string& field,
                                    const Eigen::Matrix3d& R_base_from_frame) const {
-    std::array<const Channel*, 4> from{};
+    std::array<std::vector<double>, 4> parts;
+    const Channel* first = nullptr;
     bool any = false;
     for (std::size_t i = 0; i < 4; ++i) {
       const std::string name = field + std::array{".x", ".y", ".z", ".w"}[i];
-      from[i] = topics_.log().find(topic.name + name);
-      if (from[i] == nullptr || from[i]->empty()) return std::nullopt;
-      any = any || topics_.alive_channel(topic, name) != nullptr;
+      const Channel* const from = topics_.log().find(topic.name + name);
+      if (from == nullptr || from->empty()) return std::nullopt;
+      if (first == nullptr) first = from;
+      parts[i] = at_stamps_of(*from, *first);
+      any = any || changes(parts[i]);
     }
     if (!any) return std::nullopt;
-    Attitude made{from[0]->time, {}};
+    Attitude made{first->time, {}};
     const Eigen::Quaterniond q_frame_from_base(R_base_from_frame.transpose());
-    for (std::size_t k = 0; k < from[0]->size(); ++k) {
-      const Eigen::Quaterniond q(from[3]->value[k], from[0]->value[k], from[1]->value[k], from[2]->value[k]);
+    for (std::size_t k = 0; k < first->size(); ++k) {
+      const Eigen::Quaterniond q(parts[3][k], parts[0][k], parts[1][k], parts[2][k]);
       made.q.push_back(q.squaredNorm() > 1e-6 ? q.normalized() * q_frame_from_base
                                               : Eigen::Quaterniond(kNaN, kNaN, kNaN, kNaN));
     }
@@ -179,6 +184,11 @@ class MotionFinder {
     odometry_velocity_ = *motion_.velocity_body;
     odometry_velocity_->note = note;
     odometry_velocity_->source += ", " + odometry_angles_->source;
+    // Of one message, unless samples without numbers were taken out of one of both.
+    if (odometry_velocity_->value[0].size() != q->q.size()) {
+      odometry_velocity_.reset();
+      return;
+    }
     for (std::size_t k = 0; k < q->q.size(); ++k) {
       Eigen::Vector3d v;
       for (std::size_t i = 0; i < 3; ++i) v(static_cast<Eigen::Index>(i)) = odometry_velocity_->value[i][k];

@@ -7,6 +7,8 @@
 #include <sstream>
 #include <utility>
 
+#include "veridyn/recording/channel_map.hpp"
+
 namespace veridyn::recording {
 namespace {
 
@@ -96,6 +98,11 @@ std::optional<Eigen::Matrix3d> RosTopics::R_base_from(std::string_view frame) co
     if (of_base.frame == of_frame.frame) return of_base.R.transpose() * of_frame.R;
   }
   return std::nullopt;
+}
+
+std::vector<double> at_stamps_of(const Channel& channel, const Channel& other) {
+  const bool same = channel.time == other.time || std::ranges::equal(channel.times(), other.times());
+  return same ? channel.value : interpolated(channel, other.times());
 }
 
 bool changes(std::span<const double> values) {

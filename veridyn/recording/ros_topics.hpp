@@ -41,6 +41,9 @@ class RosTopics {
   std::vector<RosTopic> topics_;
 };
 
+/// The numbers of a channel at the stamps of another of its topic: as they are where they have the same stamps, between
+/// them where samples that held nothing were taken out of one of them.
+[[nodiscard]] std::vector<double> at_stamps_of(const Channel& channel, const Channel& other);
 /// Whether numbers are there that differ from each other.
 [[nodiscard]] bool changes(std::span<const double> values);
 /// Whether a recording is one of ROS.

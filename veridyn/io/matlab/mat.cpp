@@ -180,6 +180,7 @@ class Builder {
     std::vector<std::string> names;
     for (const MatValue& item : value.items) {
       if (!is_vector(item)) continue;
+      if (item.row_times && options_.time_column.empty()) return &item;
       const std::string full = path.empty() ? item.name : fmt::format("{}.{}", path, item.name);
       const bool asked = full == options_.time_column || item.name == options_.time_column;
       time_found_ = time_found_ || asked;
@@ -311,7 +312,7 @@ class Builder {
     }
     if (!fields.empty()) {
       std::vector<double> stamps = made ? made_stamps(rows) : time->numbers;
-      if (!made) to_seconds({time->name, ""}, stamps);
+      if (!made) to_seconds({time->name, time->row_times ? "s" : ""}, stamps);
       set_series(series, std::move(stamps), std::move(fields), std::move(columns));
       log_.topics.push_back(std::move(series));
     }

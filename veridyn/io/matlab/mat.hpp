@@ -23,9 +23,12 @@ namespace veridyn::io {
 /// the
 ///   stamps are one of these, or made from a rate. With a rate alone, the arrays with the most rows are the series.
 /// - Other numeric arrays become fields of a topic without time, with their `shape`; texts become information. Where no
-///   series was found, a note says what the file holds, and one for each object (table, timetable) how to save it.
+///   series was found, a note says what the file holds.
+/// - Tables and timetables of level 5 files are structs of their columns of numbers (`MatObjects`); for each other
+/// object
+///   a note says how to save it.
 /// Level 5 files are read by our own checked code; those of MATLAB 7.3 by matio and HDF5, whose behaviour on damaged
-/// files is theirs. Complex numbers lose their imaginary part; sparse matrices and objects are left out.
+/// files is theirs. Complex numbers lose their imaginary part; sparse matrices and other objects are left out.
 /// @throws InputError when it is not such a file, and where the options name what it does not hold. A damaged variable
 /// does not throw; it is counted.
 [[nodiscard]] Log read_mat(std::string_view bytes, std::string source, const TableOptions& options = {});

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <optional>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/io/matlab/mat_objects.hpp"
 #include "veridyn/io/matlab/mat_value.hpp"
 
 namespace veridyn::io {
@@ -37,6 +39,7 @@ enum Class : std::uint32_t {
   kStructClass = 2,
   kCharClass = 4,
   kDoubleClass = 6,
+  kUint8Class = 9,
   kUint64Class = 15,
   kOpaqueClass = 17,
 };
@@ -184,6 +187,7 @@ class Parser {
   Parser(bool swap, std::string source) : swap_(swap), budget_(std::move(source)) {}
 
   [[nodiscard]] const MatBudget& budget() const { return budget_; }
+  [[nodiscard]] std::string take_subsystem() { return std::move(subsystem_); }
 
   std::optional<MatValue> matrix(std::string_view bytes, int depth) {
     MatValue value;
@@ -193,7 +197,7 @@ class Parser {
     const auto flags = elements.next();
     if (!flags || flags->type != kUint32 || flags->data.size() < 8) return std::nullopt;
     const std::uint32_t kind = load<std::uint32_t>(flags->data.data(), swap_) & 0xffU;
-    if (kind == kOpaqueClass) return object(std::move(value), elements);
+    if (kind == kOpaqueClass) return object(std::move(value), elements, depth);
     const auto extents = elements.next();
     if (!extents || extents->type != kInt32 || extents->data.size() < 8) return std::nullopt;
     std::size_t count = 1;
@@ -207,6 +211,10 @@ class Parser {
     const auto name = elements.next();
     if (!name || name->type != kInt8) return std::nullopt;
     value.name = internal::printable(name->data);
+    if (depth == 0 && value.name.empty() && kind == kUint8Class) {
+      keep_subsystem(elements, count);
+      return value;
+    }
     switch (kind) {
       case kCellClass:
         return cells(std::move(value), elements, count, depth);
@@ -235,14 +243,23 @@ class Parser {
     return value;
   }
 
-  /// An object of a class of MATLAB's own, which is not described: its name and that of its class.
-  static std::optional<MatValue> object(MatValue value, Elements& elements) {
-    const auto name = elements.next();
-    const auto system = elements.next();
-    const auto kind = elements.next();
-    if (!name || name->type != kInt8 || !system || !kind || kind->type != kInt8) return value;
-    value.name = internal::printable(name->data);
-    value.class_name = internal::printable(kind->data);
+  /// An object of a class of MATLAB's own: its name, that of its class, and a reference to what it holds, or, of the
+  /// wrapper of all objects, the cells that hold it.
+  std::optional<MatValue> object(MatValue value, Elements& elements, int depth) {
+    // Name, system and class; the wrapper in the subsystem may lack the name.
+    std::vector<std::string_view> words;
+    std::optional<Element> content = elements.next();
+    for (; content && content->type == kInt8 && words.size() < 3; content = elements.next())
+      words.push_back(content->data);
+    if (words.size() < 2) return value;
+    if (words.size() == 3) value.name = internal::printable(words.front());
+    value.class_name = internal::printable(words.back());
+    if (words[words.size() - 2] != "MCOS" || !content || content->type != kMatrix) return value;
+    auto held = matrix(content->data, depth + 1);
+    if (!held) return value;
+    value.numbers = std::move(held->numbers);
+    value.items = std::move(held->items);
+    value.extents = std::move(held->extents);
     return value;
   }
 
@@ -307,11 +324,54 @@ class Parser {
     value.items.reserve(count);
   }
 
+  /// The bytes that hold the objects of the file, which stand in it as an array without a name.
+  void keep_subsystem(Elements& elements, std::size_t count) {
+    const auto data = elements.next();
+    if (!data || data->type != kUint8 || data->data.size() != count) return;
+    budget_.take(static_cast<double>(count), "");
+    subsystem_ = data->data;
+  }
+
   static constexpr std::size_t kLargestCount = std::size_t{1} << 31U;
 
   bool swap_;
   MatBudget budget_;
+  std::string subsystem_;
 };
+
+/// The objects of a subsystem, which is laid out like a file: four bytes of version and byte order, four of nothing,
+/// then a struct whose field MCOS is the wrapper of all objects.
+std::optional<MatObjects> objects_in(Parser& parser, bool swap) {
+  constexpr std::size_t kHeader = 8;
+  const std::string bytes = parser.take_subsystem();
+  if (bytes.size() < kHeader || (bytes[2] == 'M') != swap) return std::nullopt;
+  const auto element = Elements(std::string_view(bytes).substr(kHeader), swap).next();
+  if (!element || element->type != kMatrix) return std::nullopt;
+  std::optional<MatValue> value = parser.matrix(element->data, 1);
+  if (!value || value->items.size() != 1 || value->items[0].name != "MCOS") return std::nullopt;
+  MatValue& wrapper = value->items[0];
+  return wrapper.class_name == "FileWrapper__" ? MatObjects::read(std::move(wrapper.items), swap) : std::nullopt;
+}
+
+/// Tables and timetables as structs of their columns; other objects, and those that cannot be understood, as they are.
+void take_objects(std::vector<MatValue> waiting, Parser& parser, bool swap, const std::function<void(MatValue&&)>& take,
+                  LogDamage& damage) {
+  if (waiting.empty()) return;
+  const std::optional<MatObjects> objects = objects_in(parser, swap);
+  for (MatValue& object : waiting) {
+    std::vector<std::string> left_out;
+    std::optional<MatValue> table = objects ? objects->table(object, left_out) : std::nullopt;
+    if (!table) {
+      object.numbers.clear();
+      take(std::move(object));
+      continue;
+    }
+    if (!left_out.empty())
+      damage.notes.push_back(fmt::format("columns of {} '{}' that hold no numbers are left out: {}", object.class_name,
+                                         object.name, fmt::join(left_out, ", ")));
+    take(*std::move(table));
+  }
+}
 
 }  // namespace
 
@@ -360,6 +420,7 @@ void read_mat5(std::string_view bytes, const std::string& source, const std::fun
   const bool swap = bytes[126] == 'M';
   Parser parser(swap, source);
   Elements elements(bytes.substr(kFileHeader), swap);
+  std::vector<MatValue> waiting;  // for the objects that they refer to, at the end of the file
   while (!elements.empty()) {
     const std::size_t left = elements.left();
     const auto element = elements.next();
@@ -367,7 +428,7 @@ void read_mat5(std::string_view bytes, const std::string& source, const std::fun
       damage.bytes_lost += left;
       ++damage.records_lost;
       damage.notes.emplace_back("the file ends in the middle of a variable");
-      return;
+      break;
     }
     std::optional<MatValue> value;
     if (element->type == kCompressed) {
@@ -380,12 +441,17 @@ void read_mat5(std::string_view bytes, const std::string& source, const std::fun
       value = parser.matrix(element->data, 0);
     }
     if (value) {
-      if (!value->name.empty()) take(std::move(*value));
+      if (!value->class_name.empty()) {
+        waiting.push_back(std::move(*value));
+      } else if (!value->name.empty()) {
+        take(std::move(*value));
+      }
     } else {
       damage.bytes_lost += element->data.size();
       ++damage.records_lost;
     }
   }
+  take_objects(std::move(waiting), parser, swap, take, damage);
 }
 
 }  // namespace veridyn::io

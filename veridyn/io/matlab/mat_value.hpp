@@ -42,7 +42,8 @@ class MatBudget {
 struct MatValue {
   enum class Kind { kNumbers, kText, kCell, kStruct, kOther };
   std::string name;        ///< of the variable or struct field; empty in cells
-  std::string class_name;  ///< of an object, which is not read: "timetable", "table"
+  std::string class_name;  ///< of an object: "timetable", "table"; its `numbers` are a reference (`MatObjects`)
+  bool row_times = false;  ///< the stamps of a timetable [s]
   Kind kind = Kind::kOther;
   std::vector<std::size_t> extents;  ///< column-major
   std::vector<double> numbers;

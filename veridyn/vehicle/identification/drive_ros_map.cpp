@@ -131,12 +131,15 @@ class RosDriveMap {
       const Channel& latitude = *topics_.alive_channel(topic, ".latitude");
       const Channel* const longitude = topics_.alive_channel(topic, ".longitude");
       if (longitude == nullptr || mapped_.recording.has("pos_x")) continue;
+      const std::vector<double> longitudes = recording::at_stamps_of(*longitude, latitude);
       std::size_t first = 0;
-      while (first < latitude.size() && !std::isfinite(latitude.value[first])) ++first;
-      const double lat = latitude.value[first], lon = longitude->value[first], east = std::cos(lat);
+      while (first < latitude.size() && !(std::isfinite(latitude.value[first]) && std::isfinite(longitudes[first])))
+        ++first;
+      if (first == latitude.size()) continue;
+      const double lat = latitude.value[first], lon = longitudes[first], east = std::cos(lat);
       std::vector<double> x, y;
       for (std::size_t i = 0; i < latitude.size(); ++i) {
-        x.push_back(kEarthRadius_m * east * (longitude->value[i] - lon));
+        x.push_back(kEarthRadius_m * east * (longitudes[i] - lon));
         y.push_back(kEarthRadius_m * (latitude.value[i] - lat));
       }
       put("pos_x", "m", latitude.time, std::move(x), longitude->name, "east of the first fix");
