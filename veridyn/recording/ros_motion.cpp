@@ -183,7 +183,6 @@ class MotionFinder {
     odometry_angles_->note = note;
     odometry_velocity_ = *motion_.velocity_body;
     odometry_velocity_->note = note;
-    odometry_velocity_->source += ", " + odometry_angles_->source;
     // Of one message, unless samples without numbers were taken out of one of both.
     if (odometry_velocity_->value[0].size() != q->q.size()) {
       odometry_velocity_.reset();

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "veridyn/aircraft/sensors/channel_rules.hpp"
@@ -31,7 +33,8 @@ void put_components(MapBuilder& builder, const std::optional<RosVector>& from, c
     if (builder.mapped(c.channel) || !recording::changes(from->value[c.axis])) continue;
     std::vector<double> values = from->value[c.axis];
     for (double& v : values) v *= c.sign;
-    builder.put(c.channel, unit, from->time, std::move(values), from->source, from->note);
+    builder.put(c.channel, unit, from->time, std::move(values), fmt::format("{}.{}", from->source, "xyz"[c.axis]),
+                from->note);
   }
 }
 

@@ -55,7 +55,8 @@ class RosDriveMap {
 
   void put_axes(const std::optional<RosVector>& from, const char* unit, std::array<const char*, 3> channels) {
     if (!from) return;
-    for (std::size_t i = 0; i < 3; ++i) put(channels[i], unit, from->time, from->value[i], from->source, from->note);
+    for (std::size_t i = 0; i < 3; ++i)
+      put(channels[i], unit, from->time, from->value[i], fmt::format("{}.{}", from->source, "xyz"[i]), from->note);
   }
 
   void put_channel(const RosTopic& topic, std::string_view field, const char* channel, const char* unit,
