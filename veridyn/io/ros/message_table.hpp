@@ -1,11 +1,14 @@
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "veridyn/io/log/column.hpp"
@@ -24,7 +27,7 @@ class NumberColumn {
   void push(Number value) {
     auto& values = *std::get_if<std::vector<Number>>(&values_);
     if (size_ == 0) values.assign(1, value);
-    if (!varies_ && std::memcmp(&values.front(), &value, sizeof value) != 0) {
+    if (!varies_ && !same(Number(values.front()), value)) {
       values.resize(size_, Number(values.front()));
       varies_ = true;
     }
@@ -39,6 +42,18 @@ class NumberColumn {
   [[nodiscard]] Column take();
 
  private:
+  /// To the last bit, also of numbers that are none.
+  template <typename Number>
+  static bool same(Number a, Number b) {
+    if constexpr (std::is_same_v<Number, double>) {
+      return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+    } else if constexpr (std::is_same_v<Number, float>) {
+      return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
+    } else {
+      return a == b;
+    }
+  }
+
   Column::Storage values_;
   std::size_t size_ = 0;
   bool varies_ = false;
