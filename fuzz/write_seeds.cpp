@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 
+#include "tests/support/mat_object_writer.hpp"
 #include "tests/support/ros_writer.hpp"
 #include "tests/support/synthetic_logs.hpp"
 #include "tests/support/tlog_writer.hpp"
@@ -58,6 +59,9 @@ int main(int count, char** arguments) {
     write("unit_words", "m/s\xC2\xB2", "utf8");
     write("number_table", "# of three runs\nrun,alpha[rad],CL,day\n1,0.1,0.4,Mon\n1,0.2,NaN,Mon\n2,-1e-1,,Tue\n");
     write("mat", veridyn::testing::small_mat());
+    veridyn::testing::MatObjectWriter objects;
+    const std::string times = veridyn::testing::mat_duration(objects, {500, 520, 540});
+    write("mat", veridyn::testing::timetable_mat(times, objects), "timetable");
     write("storage",
           "Coordinates\nversion=1\nnRows=2\nnColumns=3\ninDegrees=yes\nendheader\ntime\tshoulder\telbow\n0.0\t1.5\t-"
           "2e1\n0.1\t3\t+4\n");
