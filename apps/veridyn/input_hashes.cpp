@@ -1,9 +1,9 @@
 #include "apps/veridyn/input_hashes.hpp"
 
+#include <exception>
 #include <utility>
 
 #include "apps/veridyn/run_record.hpp"
-#include "veridyn/core/error.hpp"
 
 namespace veridyn::app {
 
@@ -15,7 +15,7 @@ void InputHashes::begin(std::vector<std::filesystem::path> files) {
     for (const std::filesystem::path& file : files) {
       try {
         hashes.emplace(file, sha1_of(file, &stop_));
-      } catch (const InputError&) {
+      } catch (const std::exception&) {
         // Asked for, it is refused.
       }
     }

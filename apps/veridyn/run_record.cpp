@@ -50,9 +50,32 @@ bool is_result(const fs::path& folder, const std::string& name) {
   return fs::symlink_status(folder / name, error).type() == fs::file_type::regular;
 }
 
+std::string in_hexadecimal(boost::uuids::detail::sha1& hash) {
+  unsigned int digest[5];
+  hash.get_digest(digest);
+  std::string text;
+  for (const unsigned int word : digest) text += fmt::format("{:08x}", word);
+  return text;
+}
+
+/// Of the names of its files and the SHA-1 of each.
+std::string sha1_of_folder(const fs::path& folder, const std::atomic<bool>* stop) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.is_regular_file()) files.push_back(entry.path());
+  std::ranges::sort(files);
+  boost::uuids::detail::sha1 hash;
+  for (const fs::path& file : files) {
+    const std::string line = fmt::format("{} {}\n", sha1_of(file, stop), file.filename().string());
+    hash.process_bytes(line.data(), line.size());
+  }
+  return in_hexadecimal(hash);
+}
+
 }  // namespace
 
 std::string sha1_of(const fs::path& path, const std::atomic<bool>* stop) {
+  if (fs::is_directory(path)) return sha1_of_folder(path, stop);
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError(path.string(), "cannot be read");
   boost::uuids::detail::sha1 hash;
@@ -61,11 +84,7 @@ std::string sha1_of(const fs::path& path, const std::atomic<bool>* stop) {
     if (stop != nullptr && *stop) break;
     hash.process_bytes(block.data(), at(file.gcount()));
   }
-  unsigned int digest[5];
-  hash.get_digest(digest);
-  std::string text;
-  for (const unsigned int word : digest) text += fmt::format("{:08x}", word);
-  return text;
+  return in_hexadecimal(hash);
 }
 
 std::string run_json(const RunRecord& run, const CommonOptions& options, const std::vector<HashedInput>& inputs,

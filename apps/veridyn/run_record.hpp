@@ -26,7 +26,8 @@ struct HashedInput {
   std::string sha1;
 };
 
-/// SHA-1 of a file in hexadecimal; of its part until then where `stop` becomes true.
+/// SHA-1 of a file in hexadecimal; of a folder (a bag of ROS 2, a folder of CSV) that of the lines "SHA-1 name" of its
+/// files by name, as `sha1sum` prints them with one blank. Where `stop` becomes true, of what was read until then.
 /// @throws InputError when it cannot be read.
 [[nodiscard]] std::string sha1_of(const std::filesystem::path& path, const std::atomic<bool>* stop = nullptr);
 
