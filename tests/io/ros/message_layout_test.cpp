@@ -66,6 +66,15 @@ TEST(RosLayout, IsNoneOfMessagesThatCannotBeLaidOut) {
   EXPECT_FALSE(layout("a/msg/B", deep.c_str())) << "16 to the power of 40 numbers";
 }
 
+// They would be counted for minutes.
+TEST(RosLayout, HasNothingOfMessagesWithoutFieldsInRos1) {
+  const char* const text = "Outer[4000000000] a\n==========\nMSG: a/Outer\nEmpty[5000] e\n==========\nMSG: a/Empty\n";
+  const auto made = layout("a/B", text, RosEncoding::kRos1);
+  ASSERT_TRUE(made);
+  EXPECT_TRUE(made->steps.at(0).steps.empty());
+  EXPECT_FALSE(layout("a/B", text)->steps.at(0).steps.empty()) << "ROS 2 has a byte for each";
+}
+
 TEST(RosLayout, TakesTheStampsOfPx4AsMicroseconds) {
   EXPECT_TRUE(layout("px4_msgs/msg/VehicleAttitude", "uint64 timestamp\nfloat32[4] q\n")->has_stamp);
   EXPECT_FALSE(layout("my_msgs/msg/A", "uint64 timestamp\n")->has_stamp);

@@ -105,8 +105,16 @@ class LayoutBuilder {
                       : 0;
     inner.kept = false;
     if (!add_message(field.type, inner, group.steps)) return false;
+    // Nothing is there of messages without fields in ROS 1, however many there are.
+    if (!takes_bytes(group.steps)) group.steps.clear();
     steps.push_back(std::move(group));
     return true;
+  }
+
+  static bool takes_bytes(const Steps& steps) {
+    return std::ranges::any_of(steps, [](const RosStep& step) {
+      return step.kind != RosStep::Kind::kGroup || step.count == 0 || takes_bytes(step.steps);
+    });
   }
 
   /// The stamp of a message is no channel.
