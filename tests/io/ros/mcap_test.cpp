@@ -141,6 +141,26 @@ TEST(Mcap, RefusesWhatItIsNotInOneLine) {
   EXPECT_THAT(message_of([&] { (void)read_mcap(large.bytes(), "x"); }), HasSubstr("more than 256 MiB"));
 }
 
+// A file of some kilobytes may not keep a computer busy for minutes.
+TEST(Mcap, UnpacksNoMoreThanAHundredTimesItsSize) {
+  McapWriter bomb;
+  bomb.schema(1, "std_msgs/msg/Float64", "ros2msg", "float64 data");
+  bomb.channel(1, 1, "/v");
+  bomb.message(1, kRosBegin_ns, MessageWriter().number(1.0).bytes());
+  const std::size_t before = bomb.bytes().size();
+  bomb.begin_chunk();
+  bomb.bytes().assign(32U << 20U, '\0');
+  bomb.end_chunk("zstd", 1);
+  const std::string chunk = bomb.bytes().substr(before);
+  for (int i = 0; i < 20; ++i) bomb.bytes() += chunk;
+  bomb.finish();
+  EXPECT_LT(bomb.bytes().size(), 200'000U);
+  const Log log = read_mcap(bomb.bytes(), "x");
+  EXPECT_EQ(log.count("v"), 1U);
+  EXPECT_THAT(log.damage.notes,
+              Contains(HasSubstr("chunks that cannot be unpacked: together with the others more than")));
+}
+
 TEST(Mcap, IsRecognisedByItsContent) {
   const testing::TemporaryFolder folder;
   EXPECT_EQ(read_log(folder.write("drive.bin", testing::small_mcap())).format, "MCAP");

@@ -290,12 +290,17 @@ class McapReader {
     const auto packed_size = fields.number<std::uint64_t>();
     const std::string_view packed = fields.bytes(packed_size);
     const bool cut = fields.failed();
-    const UnpackedChunk chunk = unpack_chunk(compression, packed, size, buffer_);
+    // A file that unpacks to much more than recordings do keeps no one busy.
+    const bool room = compression.empty() || size > kLargestChunk || unpacked_ + size <= most_unpacked();
+    if (!compression.empty() && size <= kLargestChunk && room) unpacked_ += size;
+    const UnpackedChunk chunk = room ? unpack_chunk(compression, packed, size, buffer_) : UnpackedChunk{};
     if (!chunk.sound || (!chunk.complete && !cut)) {
       lose_chunk(body);
       ++not_unpacked_;
       if (size > kLargestChunk) {
         reason_ = fmt::format(": more than {} MiB", kLargestChunk >> 20U);
+      } else if (!room) {
+        reason_ = fmt::format(": together with the others more than {} MiB", most_unpacked() >> 20U);
       } else if (!can_unpack(compression)) {
         reason_ = fmt::format(": compressed by {}", one_line(compression, 20));
       }
@@ -307,6 +312,11 @@ class McapReader {
       return;
     }
     walk(chunk.records, true);
+  }
+
+  /// A hundred times the file, and 512 MiB of a small one.
+  [[nodiscard]] std::uint64_t most_unpacked() const {
+    return (512ULL << 20U) + 100ULL * static_cast<std::uint64_t>(bytes_.size());
   }
 
   void lose_chunk(std::string_view body) {
@@ -321,7 +331,7 @@ class McapReader {
   std::vector<std::size_t> topics_;  ///< by channel
   std::string buffer_;
   std::size_t wrong_checksums_ = 0, not_unpacked_ = 0;
-  std::uint64_t unknown_channels_ = 0;
+  std::uint64_t unknown_channels_ = 0, unpacked_ = 0;
   std::string reason_;
   std::optional<std::uint64_t> counted_;
 };
