@@ -2,15 +2,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <random>
 #include <string>
-#include <utility>
-#include <vector>
 
-#include "tests/muscle/path/posed_arm.hpp"
-#include "veridyn/core/constants.hpp"
+#include "tests/muscle/path/believable_arms.hpp"
 #include "veridyn/muscle/osim/osim_reader.hpp"
 
 namespace veridyn::muscle {
@@ -79,76 +74,24 @@ Model made_hip(bool two) {
       .model();
 }
 
-/// What random poses over the whole ranges show of a model's arms.
-struct ArmCounts {
-  int arms = 0;
-  int stick_out = 0;  ///< more than 1.5 times the largest within 1 deg along a coordinate
-  int no_slope = 0;   ///< more than 1e-7 m from the difference of lengths, of the better of two steps
-  double largest = 0.0;
-};
-
-ArmCounts count_arms(const Model& model, int poses) {
-  test::PosedArm posed(model);
-  std::mt19937 random(18);
-  ArmCounts counts;
-  const auto turned = [](Eigen::VectorXd q, Eigen::Index c, double by) {
-    q(c) += by;
-    return q;
-  };
-  for (int n = 0; n < poses; ++n) {
-    Eigen::VectorXd q = model.default_pose();
-    for (Eigen::Index c = 0; c < q.size(); ++c) {
-      const Coordinate& k = model.coordinates[c];
-      q(c) = k.low + (k.high - k.low) * static_cast<double>(random()) / 4294967295.0;
-    }
-    posed.pose(q);
-    const std::vector<double> gradient = posed.workspace.gradient;
-    std::vector<double> near(gradient.size(), 2e-3), error(gradient.size(), 1e300);
-    for (Eigen::Index c = 0; c < q.size(); ++c) {
-      for (const double step : {-1.0, -0.5, 0.5, 1.0}) {
-        posed.pose(turned(q, c, step * kDegree));
-        for (std::size_t k = 0; k < near.size(); ++k)
-          near[k] = std::max(near[k], std::abs(posed.workspace.gradient[k]));
-      }
-      for (const double h : {1e-4, 1e-5}) {
-        std::vector<double> slope(model.muscles.size(), 0.0);
-        for (const auto& [step, weight] : {std::pair{1.0, 8.0}, {-1.0, -8.0}, {2.0, -1.0}, {-2.0, 1.0}}) {
-          posed.pose(turned(q, c, step * h));
-          for (std::size_t m = 0; m < slope.size(); ++m) slope[m] += weight * posed.workspace.length[m] / (12.0 * h);
-        }
-        for (std::size_t k = 0; k < error.size(); ++k) {
-          const MusclePaths::Pair& pair = posed.paths.pairs()[k];
-          if (pair.coordinate == c) error[k] = std::min(error[k], std::abs(slope[pair.muscle] - gradient[k]));
-        }
-      }
-    }
-    for (std::size_t k = 0; k < gradient.size(); ++k) {
-      ++counts.arms;
-      counts.stick_out += std::abs(gradient[k]) > 1.5 * near[k] ? 1 : 0;
-      counts.no_slope += error[k] > 1e-7 ? 1 : 0;
-      counts.largest = std::max(counts.largest, std::abs(gradient[k]));
-    }
-  }
-  return counts;
-}
-
-void expect_arms(const ArmCounts& counts, int most_sticking_out, int most_without_slope) {
+void expect_arms(const test::ArmCounts& counts, int most_sticking_out, int most_without_slope, double largest) {
   testing::Test::RecordProperty(
-      "arms", fmt::format("{}: {} stick out, {} are no slopes, largest {:.0f} mm", counts.arms, counts.stick_out,
-                          counts.no_slope, 1e3 * counts.largest));
+      "arms", fmt::format("{}: {} stick out, {} are no slopes, {} of them unnamed, largest {:.1f} mm", counts.arms,
+                          counts.stick_out, counts.no_slope, counts.unnamed, 1e3 * counts.largest));
   EXPECT_EQ(counts.arms, 60000);
-  EXPECT_LE(counts.stick_out, most_sticking_out);
-  EXPECT_LE(counts.no_slope, most_without_slope);
+  EXPECT_LE(counts.stick_out, most_sticking_out) << counts.where;
+  EXPECT_LE(counts.no_slope, most_without_slope) << counts.where;
+  EXPECT_EQ(counts.unnamed, 0) << counts.where;
+  EXPECT_LE(counts.largest, largest);
 }
 
-// Of 60 000 arms 6 are no slopes, the largest is 344 mm (beyond the end of a cylinder).
+// The levers of the points are up to 140 mm; the larger arms are of points deep inside a cylinder.
 TEST(MadeHip, ArmsOverCylindersWithEndsAreSlopesThatDoNotStickOut) {
-  expect_arms(count_arms(made_hip(false), 500), 0, 10);
+  expect_arms(test::count_arms(made_hip(false), 500), 0, 2, 0.21);
 }
 
-// 2 stick out and 282 are no slopes: beside changes of side and of the objects that count.
 TEST(MadeHip, ArmsOverCylindersThatCrossAreSlopesButBesideJumps) {
-  expect_arms(count_arms(made_hip(true), 500), 5, 350);
+  expect_arms(test::count_arms(made_hip(true), 500), 0, 5, 0.7);
 }
 
 }  // namespace

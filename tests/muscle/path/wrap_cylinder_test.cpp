@@ -76,24 +76,81 @@ TEST(WrapCylinder, AQuadrantSendsThePathTheLongWayRound) {
   }
 }
 
+/// The path's length as it comes off the end, and its slopes.
+struct Coming {
+  double length = 0.0;
+  Vector3d by_p = Vector3d::Zero(), by_q = Vector3d::Zero();
+  bool letting_go = false;
+};
+
+Coming coming_off(const WrapCylinder& cylinder, const Vector3d& p, const Vector3d& q) {
+  const Vector3d along = (q - p).normalized();
+  Coming path{(q - p).norm(), -along, along, false};
+  const WrapResult<double> r = wrap(cylinder, p, q);
+  if (!r.wrapped()) return path;
+  const auto left = internal::detour_left(r.length - path.length, r.beyond, r.beyond > 0.0 ? r.end_band : 1.0);
+  path.by_p += left.by_detour * (r.gradient_p - path.by_p);
+  path.by_q += left.by_detour * (r.gradient_q - path.by_q);
+  if (r.beyond > 0.0) {
+    path.by_p += left.by_beyond * r.beyond_p;
+    path.by_q += left.by_beyond * r.beyond_q;
+    path.letting_go = true;
+  }
+  path.length += left.length;
+  return path;
+}
+
 TEST(WrapCylinder, LetsGoBeyondItsEnds) {
   const WrapCylinder cylinder{0.02, 0.05, {}};
   double before = -1.0;
   for (double z = 0.03; z < 0.08; z += 1e-5) {
     const Vector3d p(-0.05, 0.001, z), q(0.05, 0.001, z);
-    const WrapResult<double> r = wrap(cylinder, p, q);
-    const double straight = (q - p).norm();
-    const double length = r.wrapped() ? straight + r.weight * (r.length - straight) : straight;
+    const Coming path = coming_off(cylinder, p, q);
     if (before > 0.0) {
-      EXPECT_NEAR(length, before, 3e-5);
+      EXPECT_NEAR(path.length, before, 1.2e-5);
     }
-    before = length;
+    before = path.length;
     if (z < 0.0519) {
-      EXPECT_EQ(r.weight, 1.0);
+      EXPECT_FALSE(path.letting_go);
+      EXPECT_EQ(path.length, wrap(cylinder, p, q).length);
     }
-    if (z > 0.0621) {
-      EXPECT_FALSE(r.wrapped());
+    if (z > 0.066) {
+      EXPECT_FALSE(wrap(cylinder, p, q).wrapped());
     }
+  }
+}
+
+TEST(WrapCylinder, SlopesOfAPathThatComesOffAnEndAreThoseOfItsLengthAndBounded) {
+  std::mt19937 random(11);
+  for (const WrapCylinder& cylinder : {WrapCylinder{0.02, 0.03, {}}, WrapCylinder{0.02, 0.03, {0, -1}}}) {
+    int letting_go = 0, dipping = 0;
+    for (int i = 0; i < 20000; ++i) {
+      Vector3d p = test::random_point(random, 0.06), q = test::random_point(random, 0.06);
+      p.z() = 0.04 + 0.3 * p.z();
+      q.z() = 0.04 + 0.3 * q.z();
+      const double near = std::min(std::hypot(p.x(), p.y()), std::hypot(q.x(), q.y()));
+      // Where an end comes to the surface or the axis, and at a quadrant's wall, slopes bend or jump.
+      if (std::abs(near - 0.02) < 1e-3 || near < 4e-3 || std::abs(p.y()) < 1e-4 || std::abs(q.y()) < 1e-4) continue;
+      const Coming here = coming_off(cylinder, p, q);
+      if (!here.letting_go) continue;
+      ++letting_go;
+      dipping += near < 0.02 ? 1 : 0;
+      if (near > 0.02) {
+        EXPECT_LT(here.by_p.norm(), 6.0) << p.transpose() << " | " << q.transpose();
+        EXPECT_LT(here.by_q.norm(), 6.0) << p.transpose() << " | " << q.transpose();
+      }
+      for (int k = 0; k < 6; ++k) {
+        const Vector3d step = Vector3d::Unit(k % 3) * 1e-7;
+        const auto length = [&](double times) {
+          return k < 3 ? coming_off(cylinder, p + times * step, q).length
+                       : coming_off(cylinder, p, q + times * step).length;
+        };
+        const double slope = (8.0 * (length(1.0) - length(-1.0)) - (length(2.0) - length(-2.0))) / 12e-7;
+        EXPECT_NEAR(slope, k < 3 ? here.by_p[k] : here.by_q[k - 3], 1e-6) << p.transpose() << " | " << q.transpose();
+      }
+    }
+    EXPECT_GT(letting_go, 1000);
+    EXPECT_GT(dipping, 300);
   }
 }
 

@@ -81,14 +81,16 @@ class PathSolver {
   /// Segment of the path as it is now on which wrap i acts (n: none), with its result in w_.result[i].
   std::size_t choose(std::size_t i, const MusclePaths::Wrap& wrap, std::size_t n);
   void insert(const Path& path, std::size_t i, std::size_t at, std::size_t& n);
-  bool remove(int wrap, std::size_t& n);
+  /// Takes a wrap off the nodes; returns where it was, 0: nowhere (a path begins with a point).
+  std::size_t remove(int wrap, std::size_t& n);
 
   // path_solver_length.hpp
   template <bool kGradient>
   Scalar general(const Path& path, PathFlag& flag);
-  /// Length with the fading objects of `mask` blended, its gradient times `factor` added.
+  /// Length over the objects of `mask`, of which the path comes off those of `beyond`; its gradient times `factor`
+  /// added.
   template <bool kGradient>
-  Scalar blended(const Path& path, unsigned mask, const Scalar& factor);
+  Scalar letting_go(const Path& path, unsigned mask, unsigned beyond, const Scalar& factor, PathFlag& flag);
   /// Length of the nodes, and its gradient times `factor`.
   template <bool kGradient>
   Scalar measure(const Path& path, std::size_t n, const Scalar& factor);
@@ -110,13 +112,16 @@ class PathSolver {
   SpatialVector<Scalar>* by_link_ = nullptr;  ///< where `add_string` adds forces of `tension_`; null: nowhere
   Scalar tension_{};
   std::size_t n_stations_ = 0;
-  unsigned done_ = 0;    ///< fading objects that `blended` has decided on
+  unsigned let_go_ = 0;  ///< objects that the path measured last has come off
   bool settled_ = true;  ///< what `settle` did last
   int side_ = 0;
   bool repeats_ = false;     ///< this side's solution is the best path so far
   double give_up_ = 0.0;     ///< length above which another side is abandoned
   std::size_t other_n_ = 0;  ///< nodes of the best path so far
   static constexpr double kNearlySettled = 1e-3;
+  static constexpr int kAcceleratedPasses = 12;
+  static constexpr int kMostPasses = 200;
+  static constexpr int kMostChanges = 8;
 };
 
 extern template class PathSolver<double>;  // in muscle_path_evaluation.cpp

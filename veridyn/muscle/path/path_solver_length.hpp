@@ -3,24 +3,24 @@
 #include <cmath>
 
 #include "veridyn/muscle/path/path_solver.hpp"
+#include "veridyn/muscle/path/wrap_end.hpp"
 
-/// Length and gradient of a path whose nodes are known, and the blending of wraps that fade.
+/// Length and gradient of a path whose nodes are known, and of one that comes off cylinders.
 namespace veridyn::muscle {
 
 template <typename Scalar>
 template <bool kGradient>
 inline Scalar PathSolver<Scalar>::general(const Path& path, PathFlag& flag) {
   stations(path);
+  let_go_ = 0;
   if (n_stations_ < 2) return Scalar(0.0);
   const bool any = detect(path, flag);
-  unsigned mask = ~0u;
-  if (!any) mask = 0;
-  std::size_t fading = path.wraps.size();
+  unsigned beyond = 0;
   for (std::size_t i = 0; any && i < path.wraps.size(); ++i)
-    if (w_.first_segment[i] >= 0 && w_.first[i]->weight < Scalar(1.0)) fading = i;
-  if (fading == path.wraps.size() || paths_.mode_ == WrapMode::kAsOpenSim)
-    return measure<kGradient>(path, solve(path, mask), Scalar(1.0));
-  return blended<kGradient>(path, mask, Scalar(1.0));
+    if (w_.first_segment[i] >= 0 && w_.first[i]->beyond > Scalar(0.0)) beyond |= 1u << i;
+  if (beyond == 0 || paths_.mode_ == WrapMode::kAsOpenSim)
+    return measure<kGradient>(path, solve(path, any ? ~0u : 0u), Scalar(1.0));
+  return letting_go<kGradient>(path, ~0u, beyond, Scalar(1.0), flag);
 }
 
 template <typename Scalar>
@@ -34,30 +34,36 @@ inline void PathSolver<Scalar>::pull(int muscle, const Scalar& tension, SpatialV
 
 template <typename Scalar>
 template <bool kGradient>
-inline Scalar PathSolver<Scalar>::blended(const Path& path, unsigned mask, const Scalar& factor) {
-  for (std::size_t i = 0; i < path.wraps.size(); ++i) {
-    if ((mask >> i & 1u) == 0 || w_.first_segment[i] < 0 || !(w_.first[i]->weight < Scalar(1.0))) continue;
-    if ((done_ >> i & 1u) != 0) continue;
-    done_ |= 1u << i;
-    const MusclePaths::Wrap& wrap = path.wraps[i];
-    const Node a = w_.stations[w_.first_segment[i]];
-    const Node b = w_.stations[w_.first_segment[i] + 1];
-    const Scalar weight = w_.first[i]->weight;
-    const Vector slope_a = w_.first[i]->weight_p, slope_b = w_.first[i]->weight_q;
-    const Scalar with = blended<kGradient>(path, mask, Scalar(factor * weight));
-    const Scalar without = blended<kGradient>(path, mask & ~(1u << i), Scalar(factor * (Scalar(1.0) - weight)));
-    if constexpr (kGradient) {
-      const Scalar change = factor * (with - without);
-      const int link = paths_.objects_[wrap.object].link;
-      add_string(path, change, a.x, slope_a, link, a.link);
-      add_string(path, change, b.x, slope_b, link, b.link);
-      add_moving(path, change, a.point, slope_a);
-      add_moving(path, change, b.point, slope_b);
-    }
-    done_ &= ~(1u << i);
-    return without + weight * (with - without);
+inline Scalar PathSolver<Scalar>::letting_go(const Path& path, unsigned mask, unsigned beyond, const Scalar& factor,
+                                             PathFlag& flag) {
+  if (beyond == 0) return measure<kGradient>(path, solve(path, mask), factor);
+  std::size_t i = 0;
+  while ((beyond >> i & 1u) == 0) ++i;
+  const unsigned bit = 1u << i, others = beyond & ~bit;
+  const WrapResult<Scalar>& wrap = *w_.first[i];
+  const Scalar with = letting_go<false>(path, mask, others, factor, flag);
+  const Scalar without = letting_go<false>(path, mask & ~bit, others, factor, flag);
+  const internal::DetourLeft<Scalar> left = internal::detour_left<Scalar>(with - without, wrap.beyond, wrap.end_band);
+  if (left.none) {
+    let_go_ |= bit;
+  } else {
+    flag = std::max(flag, PathFlag::kFading);
   }
-  return measure<kGradient>(path, solve(path, mask), factor);
+  if constexpr (kGradient) {
+    letting_go<true>(path, mask & ~bit, others, Scalar(factor * (Scalar(1.0) - left.by_detour)), flag);
+    if (!left.none) {
+      letting_go<true>(path, mask, others, Scalar(factor * left.by_detour), flag);
+      const Node a = w_.stations[w_.first_segment[i]];
+      const Node b = w_.stations[w_.first_segment[i] + 1];
+      const Scalar change = factor * left.by_beyond;
+      const int link = paths_.objects_[path.wraps[i].object].link;
+      add_string(path, change, a.x, wrap.beyond_p, link, a.link);
+      add_string(path, change, b.x, wrap.beyond_q, link, b.link);
+      add_moving(path, change, a.point, wrap.beyond_p);
+      add_moving(path, change, b.point, wrap.beyond_q);
+    }
+  }
+  return without + left.length;
 }
 
 template <typename Scalar>

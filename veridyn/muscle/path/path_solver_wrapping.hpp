@@ -16,9 +16,8 @@ template <typename Scalar>
 inline std::size_t PathSolver<Scalar>::nodes_of(int muscle) {
   PathFlag flag = PathFlag::kFine;
   const Path& path = paths_.muscles_[muscle];
-  stations(path);
-  detect(path, flag);
-  return solve(path, ~0u);
+  general<false>(path, flag);
+  return solve(path, ~let_go_);
 }
 
 template <typename Scalar>
@@ -87,9 +86,9 @@ inline bool PathSolver<Scalar>::wrap_between(const MusclePaths::Object& object, 
     r.gradient_p = frame.rotation * r.gradient_p;
     r.gradient_q = frame.rotation * r.gradient_q;
   }
-  if (r.weight < Scalar(1.0)) {
-    r.weight_p = frame.rotation * r.weight_p;
-    r.weight_q = frame.rotation * r.weight_q;
+  if (r.beyond > Scalar(0.0)) {
+    r.beyond_p = frame.rotation * r.beyond_p;
+    r.beyond_q = frame.rotation * r.beyond_q;
   }
   return true;
 }
@@ -153,7 +152,6 @@ inline bool PathSolver<Scalar>::detect(const Path& path, PathFlag& flag) {
       }
       if (r->meets) break;
     }
-    if (w_.first_segment[i] >= 0 && w_.first[i]->weight < Scalar(1.0)) flag = std::max(flag, PathFlag::kFading);
   }
   return any;
 }
@@ -270,7 +268,8 @@ inline std::size_t PathSolver<Scalar>::settle(const Path& path, unsigned mask) {
   int step = 0;
   Acceleration acceleration;
   bool settled = false;
-  for (int pass = 0; pass < 60; ++pass) {
+  int changes = 0;  // of which objects are on the path, and in which order
+  for (int pass = 0; pass < kMostPasses && changes < kMostChanges; ++pass) {
     double moved = 0.0;
     for (std::size_t i = 0; i < path.wraps.size(); ++i) {
       if ((mask >> i & 1u) == 0) continue;
@@ -283,11 +282,12 @@ inline std::size_t PathSolver<Scalar>::settle(const Path& path, unsigned mask) {
       solved_at[i] = ++step;
       const MusclePaths::Wrap& wrap = path.wraps[i];
       const WrapResult<Scalar>* was = w_.result[i];
-      const bool was_there = remove(static_cast<int>(i), n);
+      const std::size_t was_at = remove(static_cast<int>(i), n);
+      const bool was_there = was_at > 0;
       const std::size_t at = choose(i, wrap, n);
       if (at < n) {
         insert(path, i, at, n);
-        if (!was_there) {
+        if (at + 1 != was_at) {  // new, or on another segment: two objects may go on overtaking each other
           moved = 1.0;
           changed_at[i] = step;
         } else if (w_.result[i] != was || was == &w_.result_solved[i]) {
@@ -306,6 +306,7 @@ inline std::size_t PathSolver<Scalar>::settle(const Path& path, unsigned mask) {
         changed_at[i] = step;
       }
     }
+    changes += moved >= 1.0 ? 1 : 0;
     settled = moved == 0.0 || (pass > 0 && moved < 1e-10 && more-- <= 0);
     if (settled) break;
     // Nearly settled tangent points show which solution they approach; the length is stationary and shows whether it
@@ -316,7 +317,8 @@ inline std::size_t PathSolver<Scalar>::settle(const Path& path, unsigned mask) {
       if (settled) break;
     }
     if constexpr (std::is_same_v<Scalar, double>) {
-      if (pass > 0) accelerate(n, moved, acceleration);
+      // By itself each pass shortens the path; with acceleration it may go astray.
+      if (pass > 0 && pass < kAcceleratedPasses) accelerate(n, moved, acceleration);
     }
   }
   settled_ = settled;
@@ -378,14 +380,14 @@ inline void PathSolver<Scalar>::accelerate(std::size_t n, double moved, Accelera
 }
 
 template <typename Scalar>
-inline bool PathSolver<Scalar>::remove(int wrap, std::size_t& n) {
+inline std::size_t PathSolver<Scalar>::remove(int wrap, std::size_t& n) {
   for (std::size_t j = 0; j < n; ++j) {
     if (w_.nodes[j].wrap != wrap) continue;
     for (std::size_t k = j; k + 2 < n; ++k) w_.nodes[k] = w_.nodes[k + 2];
     n -= 2;
-    return true;
+    return j;
   }
-  return false;
+  return 0;
 }
 
 template <typename Scalar>
@@ -412,7 +414,7 @@ inline std::size_t PathSolver<Scalar>::choose(std::size_t i, const MusclePaths::
         wrap_between(object, wrap.object, wrap, false, a.x, b.x, w_.fresh);
       }
     } else {
-      // Only the ends of the segment that an object was found on fade it: here it counts fully.
+      // How far it is beyond an end is that of the segment it was found on: here it counts fully.
       wrap_between(object, wrap.object, wrap, false, a.x, b.x, w_.fresh, &w_.memory[i]);
     }
     if (!r->wrapped()) continue;

@@ -11,7 +11,7 @@ namespace veridyn::muscle {
 /// How good a path's length is, worse values last.
 enum class PathFlag : std::uint8_t {
   kFine = 0,
-  kFading = 1,  ///< a wrap counts in part: its cylinder ends
+  kFading = 1,  ///< it is letting go of a cylinder, beyond its end
   kFailed = 2,  ///< a geodesic did not converge: straight there
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/muscle/path/wrap_end.hpp"
 #include "veridyn/muscle/path/wrap_lift.hpp"
 #include "veridyn/muscle/path/wrap_result.hpp"
 
@@ -49,55 +50,8 @@ inline CylinderPass cylinder_pass(const WrapCylinder& cylinder, double px, doubl
   return pass;
 }
 
-/// A path over a cylinder as seen along the axis: straight parts of length d1 and d2 and the arc between them.
-template <typename Scalar>
-struct CylinderPath {
-  Scalar radius;
-  Scalar d1, d2;
-  Scalar angle;   ///< of the arc
-  Scalar planar;  ///< length of all three
-  Scalar flat;    ///< planar / length
-  Scalar slope;   ///< along the axis, per planar length
-};
-
-/// Lets a wrap go whose nearer tangent point lies beyond the cylinder's ends. Returns the weight's slope with respect
-/// to the radius.
-///
-/// From the slopes of the tangent point's height, z1 = p.z + dz d1/planar or z2 = q.z - dz d2/planar. A planar taut
-/// string's length changes by minus its direction at P, by its direction at Q, by its angle with the radius.
-template <typename Scalar>
-Scalar fade_beyond_ends(const WrapCylinder& cylinder, const Eigen::Matrix<Scalar, 3, 1>& p,
-                        const Eigen::Matrix<Scalar, 3, 1>& q, const CylinderPath<Scalar>& path,
-                        WrapResult<Scalar>& result) {
-  using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
-  const Scalar zero(0.0);
-  const bool first = std::abs(value_of(result.r1.z())) < std::abs(value_of(result.r2.z()));
-  const Scalar& height = first ? result.r1.z() : result.r2.z();
-  const Vector3 in(result.direction1.x() / path.flat, result.direction1.y() / path.flat, zero);
-  const Vector3 out(result.direction2.x() / path.flat, result.direction2.y() / path.flat, zero);
-  const Scalar& d = first ? path.d1 : path.d2;
-  const Scalar part = d / path.planar;
-  const Vector3 d_slope = (first ? Vector3(p.x(), p.y(), zero) : Vector3(q.x(), q.y(), zero)) / d;
-  // d part = (d d - part d planar) / planar
-  Vector3 part_p = in * part, part_q = out * (-part);
-  (first ? part_p : part_q) += d_slope;
-  const Scalar part_radius = -path.radius / d - part * path.angle;
-  const Scalar sign = first ? path.slope : Scalar(-path.slope);
-  Vector3 height_p = part_p * sign, height_q = part_q * sign;
-  height_p.z() += first ? Scalar(Scalar(1.0) - part) : part;
-  height_q.z() += first ? part : Scalar(Scalar(1.0) - part);
-  const double up = value_of(height) > 0.0 ? 1.0 : -1.0;
-  const double band = (kEndFade - kEndStart) * cylinder.radius;
-  const Scalar x = (height * Scalar(up) - Scalar(cylinder.half_length + kEndStart * cylinder.radius)) / Scalar(band);
-  const Scalar change = fade_slope(x) * Scalar(up / band);
-  result.weight = fade(x);
-  result.weight_p = height_p * change;
-  result.weight_q = height_q * change;
-  return part_radius * sign * change;
-}
-
-/// Both ends outside `radius`, which is below the cylinder's own where an end was lifted. Returns the slope of the
-/// weight with respect to it.
+/// Both ends outside `radius`, which is below the cylinder's own where an end was lifted. Returns the slope of
+/// `result.beyond` with respect to it.
 template <typename Scalar>
 Scalar wrap_outside(const WrapCylinder& cylinder, const CylinderPass& pass, const Scalar& radius,
                     const Eigen::Matrix<Scalar, 3, 1>& p, const Eigen::Matrix<Scalar, 3, 1>& q,
@@ -132,9 +86,6 @@ Scalar wrap_outside(const WrapCylinder& cylinder, const CylinderPass& pass, cons
   const Scalar slope = dz / planar;
   result.r1.z() = p.z() + slope * d1;
   result.r2.z() = q.z() - slope * d2;
-  const double overrun =
-      std::min(std::abs(value_of(result.r1.z())), std::abs(value_of(result.r2.z()))) - cylinder.half_length;
-  if (overrun >= kEndFade * cylinder.radius) return Scalar(0.0);
   result.status = WrapStatus::kWrapped;
   const Scalar flat = planar * per_length;
   const Scalar steep = dz * per_length;
@@ -144,14 +95,16 @@ Scalar wrap_outside(const WrapCylinder& cylinder, const CylinderPass& pass, cons
   result.direction2 = Vector3((q.x() - result.r2.x()) * s2, (q.y() - result.r2.y()) * s2, steep);
   result.gradient_p = -result.direction1;
   result.gradient_q = result.direction2;
-  if (overrun > kEndStart * cylinder.radius)
-    return fade_beyond_ends<Scalar>(cylinder, p, q, {radius, d1, d2, angle, planar, flat, slope}, result);
-  return Scalar(0.0);
+  if (!may_be_beyond(cylinder.radius, cylinder.half_length, value_of(p.z()), value_of(q.z()))) return none;
+  const Vector3 first(result.direction1.x() / flat, result.direction1.y() / flat, none);
+  const Vector3 last(result.direction2.x() / flat, result.direction2.y() / flat, none);
+  return set_beyond<Scalar>(cylinder.radius, cylinder.half_length, radius, p, q, {planar, first, last, angle}, result);
 }
 
-/// An end inside: that of its foot, with the ends' band as well where nothing but the foot is touched.
+/// An end inside: that of its foot. Where nothing but the foot is touched, the path from there is straight.
 template <typename Scalar>
 void wrap_lifted_onto(const WrapCylinder& cylinder, const Lift<Scalar>& lift, bool radial, WrapResult<Scalar>& result) {
+  using std::sqrt;
   using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
   result.clear();
   const Vector3 &p = lift.p.foot, &q = lift.q.foot;
@@ -160,26 +113,17 @@ void wrap_lifted_onto(const WrapCylinder& cylinder, const Lift<Scalar>& lift, bo
   WrapCylinder shrunk = cylinder;
   shrunk.radius = value_of(radius);
   const CylinderPass pass = cylinder_pass(shrunk, value_of(p.x()), value_of(p.y()), value_of(q.x()), value_of(q.y()));
-  Scalar weight_radius = wrap_outside<Scalar>(cylinder, pass, radius, p, q, result);
-  if (!pass.long_way && !pass.meets) {
-    const bool first = lift.p.lifted && !(lift.q.lifted && std::abs(value_of(q.z())) < std::abs(value_of(p.z())));
-    const Scalar& height = first ? p.z() : q.z();
-    const double beyond = std::abs(value_of(height)) - cylinder.half_length;
-    if (beyond >= kEndFade * cylinder.radius) return;
-    if (beyond > kEndStart * cylinder.radius) {
-      const double up = value_of(height) > 0.0 ? 1.0 : -1.0, band = (kEndFade - kEndStart) * cylinder.radius;
-      const Scalar x =
-          (height * Scalar(up) - Scalar(cylinder.half_length + kEndStart * cylinder.radius)) / Scalar(band);
-      result.weight = fade(x);
-      result.weight_p = result.weight_q = Vector3::Zero();
-      (first ? result.weight_p : result.weight_q).z() = fade_slope(x) * Scalar(up / band);
-    }
-  } else if (!result.wrapped()) {
-    return;  // beyond the ends
+  Scalar beyond_radius = wrap_outside<Scalar>(cylinder, pass, radius, p, q, result);
+  if (!result.wrapped() && may_be_beyond(cylinder.radius, cylinder.half_length, value_of(p.z()), value_of(q.z()))) {
+    const Vector3 across(q.x() - p.x(), q.y() - p.y(), Scalar(0.0));
+    const Scalar planar = sqrt(across.squaredNorm() + Scalar(1e-24));
+    const Vector3 along = across / planar;
+    beyond_radius = set_beyond<Scalar>(cylinder.radius, cylinder.half_length, radius, p, q,
+                                       {planar, along, along, Scalar(0.0)}, result);
   }
-  const bool fading = result.weight < Scalar(1.0);
   finish_lifted(lift, radial, result);
-  if (fading) pull_back<Scalar>(lift, false, weight_radius * Scalar(cylinder.radius), result.weight_p, result.weight_q);
+  if (result.beyond > Scalar(0.0))
+    pull_back<Scalar>(lift, false, beyond_radius * Scalar(cylinder.radius), result.beyond_p, result.beyond_q);
 }
 
 template <typename Scalar>
@@ -205,13 +149,19 @@ extern template void wrap_onto<double>(const WrapCylinder&, const Eigen::Vector3
 /// Without a quadrant the path goes round the shorter way, where the segment meets the cylinder. A quadrant is read as
 /// a wall from the axis to infinity on the inactive side: the path never crosses it, so it may go round the longer way
 /// even where the segment does not meet the cylinder. That is OpenSim's choice except where both ends lie on the
-/// inactive side and the segment misses the cylinder, which OpenSim wraps and a string would not. There is no wrap
-/// where both tangent points lie beyond the cylinder's ends (plus the fade, `wrap_result.hpp`).
+/// inactive side and the segment misses the cylinder, which OpenSim wraps and a string would not. Beyond the cylinder's
+/// ends the path lets go (`wrap_end.hpp`): `beyond` says how far it is, and it is straight where it has.
 template <typename Scalar>
 [[nodiscard]] WrapResult<Scalar> wrap(const WrapCylinder& cylinder, const Eigen::Matrix<Scalar, 3, 1>& p,
                                       const Eigen::Matrix<Scalar, 3, 1>& q) {
   WrapResult<Scalar> result;
   internal::wrap_onto(cylinder, p, q, true, result);
+  if (result.wrapped() && result.beyond > Scalar(0.0)) {
+    using std::sqrt;
+    const Scalar straight = sqrt((q - p).squaredNorm());
+    if (internal::detour_left<Scalar>(result.length - straight, result.beyond, result.end_band).none)
+      result.status = WrapStatus::kStraight;
+  }
   return result;
 }
 

@@ -11,9 +11,8 @@
 /// the length of a taut string: stationary in the tangent points, so that unit tension does exactly the work of its
 /// change (dL/dP = -direction1, dL/dQ = direction2), and closed forms or Newton's method find it to rounding.
 ///
-/// An end inside an object is lifted to its surface (`wrap_lift.hpp`). A cylinder's wrap goes over into the straight
-/// path between `kEndStart` and `kEndFade` of its radius beyond its ends, where OpenSim's jumps; beyond the band both
-/// are the same.
+/// An end inside an object is lifted to its surface (`wrap_lift.hpp`). A path that comes off the end of a cylinder lets
+/// go of it over a way beyond that end (`wrap_end.hpp`), where OpenSim's jumps.
 namespace veridyn::muscle {
 
 /// How a segment goes past an object.
@@ -23,9 +22,6 @@ enum class WrapStatus {
   kInside,  ///< as OpenSim only: an end lies inside the object, and the segment is left straight
   kFailed,  ///< the geodesic iteration did not converge: the segment is left straight
 };
-
-inline constexpr double kEndStart = 0.1;  ///< [radii of the cylinder]
-inline constexpr double kEndFade = 0.6;   ///< [radii of the cylinder]
 
 /// One segment wrapped over one object.
 template <typename Scalar>
@@ -42,11 +38,12 @@ struct WrapResult {
   /// dL/dP and dL/dQ: -direction1 and direction2 unless an end was lifted.
   Vector3 gradient_p = Vector3::Zero();
   Vector3 gradient_q = Vector3::Zero();
-  /// How much of the wrap counts, 0..1: below 1 in the band beyond a cylinder's ends; its derivatives with respect to
-  /// P, Q.
-  Scalar weight{1.0};
-  Vector3 weight_p = Vector3::Zero();
-  Vector3 weight_q = Vector3::Zero();
+  /// How far the path is beyond a cylinder's end [m], 0: not at all; its derivatives with respect to P, Q, and the
+  /// least way over which it lets go.
+  Scalar beyond{};
+  Vector3 beyond_p = Vector3::Zero();
+  Vector3 beyond_q = Vector3::Zero();
+  double end_band = 0.0;
   /// How deep an end lies inside, in radii; 0 outside. Above 0, `surface_length` is what is missing from the straight
   /// parts to `length`.
   double depth = 0.0;
@@ -61,7 +58,7 @@ struct WrapResult {
   /// Straight, without touching what only a wrap sets: most segments miss most objects.
   void clear() {
     status = WrapStatus::kStraight;
-    weight = Scalar(1.0);
+    beyond = Scalar(0.0);
     depth = 0.0;
     meets = true;
     spread = 1.0;
@@ -79,19 +76,6 @@ namespace internal {
 /// Keeps an end off the surface by this part of the radius, where tangent points and derivatives are still well
 /// conditioned.
 inline constexpr double kSurfaceGap = 1e-6;
-
-/// 1 at x <= 0, 0 at x >= 1, slope zero at both.
-template <typename Scalar>
-[[nodiscard]] Scalar fade(const Scalar& x) {
-  if (!(x > Scalar(0.0))) return Scalar(1.0);
-  if (!(x < Scalar(1.0))) return Scalar(0.0);
-  return Scalar(1.0) - x * x * (Scalar(3.0) - Scalar(2.0) * x);
-}
-template <typename Scalar>
-[[nodiscard]] Scalar fade_slope(const Scalar& x) {
-  if (!(x > Scalar(0.0)) || !(x < Scalar(1.0))) return Scalar(0.0);
-  return Scalar(-6.0) * x * (Scalar(1.0) - x);
-}
 
 }  // namespace internal
 }  // namespace veridyn::muscle

@@ -44,8 +44,6 @@ WrapResult<Scalar> wrap_tube(const WrapTorus& torus, const Eigen::Matrix<Scalar,
   result.direction2 = turn(result.direction2);
   result.gradient_p = turn(result.gradient_p);
   result.gradient_q = turn(result.gradient_q);
-  result.weight_p = turn(result.weight_p);
-  result.weight_q = turn(result.weight_q);
   return result;
 }
 

@@ -31,10 +31,19 @@ class ArmsAlongMotion {
     return largest;
   }
 
-  /// Where between two poses a muscle's arms jump: the jump, and in `part` where. 0: they only change.
-  double jump(int muscle, const Eigen::VectorXd& from, const Eigen::VectorXd& to, double& part) {
+  struct Jump {
+    double arm = 0.0;     ///< 0: arms only change
+    double length = 0.0;  ///< what a continuous length does not explain
+    double part = 0.0;    ///< where: 0 at the first pose, 1 at the second
+  };
+
+  /// Where between two poses a muscle's arms jump.
+  Jump jump(int muscle, const Eigen::VectorXd& from, const Eigen::VectorXd& to) {
     double low = 0.0, high = 1.0;
-    std::vector<double> below = at_pose(from).gradient, above = at_pose(to).gradient;
+    std::vector<double> below = at_pose(from).gradient;
+    double length_below = workspace_.length[muscle];
+    std::vector<double> above = at_pose(to).gradient;
+    double length_above = workspace_.length[muscle];
     const double whole = difference(muscle, below, above);
     for (int i = 0; i < kHalvings; ++i) {
       const double middle = 0.5 * (low + high);
@@ -42,18 +51,22 @@ class ArmsAlongMotion {
       if (difference(muscle, below, now) > difference(muscle, now, above)) {
         high = middle;
         above = now;
+        length_above = workspace_.length[muscle];
       } else {
         low = middle;
         below = now;
+        length_below = workspace_.length[muscle];
       }
     }
-    part = 0.5 * (low + high);
     const double left = difference(muscle, below, above);
-    return left > 0.5 * whole ? left : 0.0;
+    if (!(left > 0.5 * whole)) return {};
+    const double apart = std::abs(length_above - length_below);
+    return {left, apart > kLeastLengthJump ? apart : 0.0, 0.5 * (low + high)};
   }
 
  private:
   static constexpr int kHalvings = 20;
+  static constexpr double kLeastLengthJump = 1e-5;  // [m], far above what a motion does in 2^-20 of a step
   const MusculoskeletalSystem& system_;
   Kinematics<double> kinematics_;
   PathWorkspace<double> workspace_;
@@ -81,7 +94,7 @@ std::vector<WrapBandVisit> wrap_band_visits(const MusculoskeletalSystem& system,
       const WrapBandKind kind = workspace.flag[m] == PathFlag::kFading ? WrapBandKind::kEnds : WrapBandKind::kNotFound;
       if (visit_of[m] < 0) {
         visit_of[m] = static_cast<int>(visits.size());
-        visits.push_back({static_cast<int>(m), kind, 0, time_of(i), time_of(i), 0.0, pose});
+        visits.push_back({static_cast<int>(m), kind, 0, time_of(i), time_of(i), 0.0, 0.0, pose});
       }
       WrapBandVisit& visit = visits[visit_of[m]];
       visit.kind = std::max(visit.kind, kind);
@@ -91,11 +104,11 @@ std::vector<WrapBandVisit> wrap_band_visits(const MusculoskeletalSystem& system,
     for (int m = 0; i > 0 && m < static_cast<int>(visit_of.size()); ++m) {
       if (!system.paths().can_wrap(m) || arms.difference(m, before, now) < kLeastJump) continue;
       const Eigen::VectorXd last = q.row(i - 1).transpose();
-      double part = 0.0;
-      const double jump = arms.jump(m, last, pose, part);
-      if (jump < kLeastJump) continue;
-      const double t = time_of(i - 1) + part * (time_of(i) - time_of(i - 1));
-      visits.push_back({m, WrapBandKind::kSideChange, 1, t, t, jump, last + part * (pose - last)});
+      const ArmsAlongMotion::Jump jump = arms.jump(m, last, pose);
+      if (jump.arm < kLeastJump) continue;
+      const double t = time_of(i - 1) + jump.part * (time_of(i) - time_of(i - 1));
+      visits.push_back(
+          {m, WrapBandKind::kSideChange, 1, t, t, jump.arm, jump.length, last + jump.part * (pose - last)});
     }
     before = now;
   }
@@ -107,12 +120,14 @@ std::string wrap_band_text(const MusculoskeletalSystem& system, const WrapBandVi
   const std::string& name = system.model().muscles[visit.muscle].name();
   if (visit.kind == WrapBandKind::kSideChange)
     return fmt::format(
-        "muscle '{}' changes the side of a wrap object at {:.4g} s ({}): its moment arm jumps by {:.3g} mm", name,
-        visit.first, pose, visit.jump * 1e3);
-  const char* what =
-      visit.kind == WrapBandKind::kEnds
-          ? "passes the end of a cylinder of its path, where its moment arm can be several times too large"
-          : "has a wrap that was not found, and its path is straight there";
+        "muscle '{}' changes the side of a wrap object at {:.4g} s ({}): its moment arm jumps by {:.3g} mm{}", name,
+        visit.first, pose, visit.jump * 1e3,
+        visit.length_jump > 0.0 ? fmt::format(", its length by {:.3g} mm", visit.length_jump * 1e3) : "");
+  const char* what = visit.kind == WrapBandKind::kEnds
+                         ? "lets go of a cylinder of its path beyond its end, where its moment arm may be up to about "
+                           "three times that of "
+                           "the path before and after"
+                         : "has a wrap that was not found, and its path is straight there";
   return fmt::format("muscle '{}' {}: {:.4g} to {:.4g} s, {} samples, first at {}", name, what, visit.first, visit.last,
                      visit.poses, pose);
 }

@@ -12,7 +12,7 @@ namespace veridyn::muscle {
 
 /// What makes a muscle's moment arms doubtful along a motion.
 enum class WrapBandKind {
-  kEnds,  ///< a wrap counts in part: its cylinder ends. Lengths change quickly, arms can be several times too large
+  kEnds,        ///< the path lets go of a cylinder beyond its end, where OpenSim's jumps: arms are those of letting go
   kSideChange,  ///< the path changes the side of a wrap object, or a point of it comes or goes: its arms jump
   kNotFound,    ///< a wrap was not found although it should be there: straight
 };
@@ -24,7 +24,8 @@ struct WrapBandVisit {
   std::size_t poses = 0;           ///< how many of those given; of a side change 1
   double first = 0.0, last = 0.0;  ///< times of the first and last of them [s]
   double jump = 0.0;               ///< of the moment arm at a side change [m or 1]
-  Eigen::VectorXd pose;            ///< at the first; all coordinates
+  double length_jump = 0.0;  ///< of the length there [m]: 0 unless a point passes a quadrant's wall or objects cross
+  Eigen::VectorXd pose;      ///< at the first; all coordinates
 };
 
 /// Such muscles and poses of a motion (rows of `q`: all coordinates). With the exact paths, whatever the system's
