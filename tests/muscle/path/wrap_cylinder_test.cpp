@@ -88,15 +88,11 @@ Coming coming_off(const WrapCylinder& cylinder, const Vector3d& p, const Vector3
   Coming path{(q - p).norm(), -along, along, false};
   const WrapResult<double> r = wrap(cylinder, p, q);
   if (!r.wrapped()) return path;
-  const auto left = internal::detour_left(r.length - path.length, r.beyond, r.beyond > 0.0 ? r.end_band : 1.0);
-  path.by_p += left.by_detour * (r.gradient_p - path.by_p);
-  path.by_q += left.by_detour * (r.gradient_q - path.by_q);
-  if (r.beyond > 0.0) {
-    path.by_p += left.by_beyond * r.beyond_p;
-    path.by_q += left.by_beyond * r.beyond_q;
-    path.letting_go = true;
-  }
-  path.length += left.length;
+  const double detour = r.length - path.length;
+  path.letting_go = r.weight < 1.0;
+  path.by_p += r.weight * (r.gradient_p - path.by_p) + detour * r.weight_p;
+  path.by_q += r.weight * (r.gradient_q - path.by_q) + detour * r.weight_q;
+  path.length += r.weight * detour;
   return path;
 }
 

@@ -32,9 +32,10 @@ int MusclePaths::segment(int a, int b) {
   }
   for (const auto& [at, sign] : {std::pair{&pa, -1}, std::pair{&pb, 1}}) {
     if (at->moving < 0) continue;
-    for (int axis = 0; axis < 3; ++axis) {
-      const int c = moving_[at->moving].coordinate[axis];
-      if (c >= 0) terms_.push_back({c, sign, 3 * at->moving + axis});
+    const MovingPoint& moving = moving_[at->moving];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const int c = moving.coordinate[axis];
+      if (c >= 0 && moving.with[axis] == axis) terms_.push_back({c, sign, 3 * at->moving + static_cast<int>(axis)});
     }
   }
   segment.terms[1] = terms_.size();
@@ -111,8 +112,14 @@ MusclePaths::PathStation MusclePaths::station(const Model& model, const Mechanis
     moving.coordinate = p.moving_coordinate;
     moving.location = p.moving_location;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (moving.coordinate[axis] < 0) continue;
+      if (moving.coordinate[axis] < 0) {
+        moving.still[axis] = moving.location[axis].evaluate(0.0).value;
+        continue;
+      }
       const Coordinate& c = model.coordinates[moving.coordinate[axis]];
+      moving.with[axis] = axis;
+      for (std::size_t other = axis; other-- > 0;)
+        if (moving.coordinate[other] == moving.coordinate[axis]) moving.with[axis] = other;
       moving.low[axis] = c.low;
       moving.high[axis] = c.high;
     }
@@ -259,7 +266,8 @@ void MusclePaths::compile_straight(int muscle) {
           const Segment& compiled = segments_[s];
           for (std::size_t t = compiled.terms[0]; t < compiled.terms[1]; ++t)
             for (std::size_t k = path.pairs[0]; k < path.pairs[1]; ++k)
-              if (pairs_[k].coordinate == terms_[t].coordinate) variant_adds_.push_back({t, k});
+              if (pairs_[k].coordinate == terms_[t].coordinate)
+                variant_adds_.push_back({static_cast<std::uint32_t>(t), static_cast<std::uint32_t>(k)});
         }
       }
       a = b;
@@ -282,44 +290,78 @@ void MusclePaths::sort_segments() {
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t i, std::size_t j) { return links(segments_[i]) < links(segments_[j]); });
   std::vector<Segment> sorted;
+  const auto fixed_end = [&](int p, int q) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      end_a_[axis].push_back(p < 0 ? 0.0 : points_[p].location[axis]);
+      end_b_[axis].push_back(q < 0 ? 1.0 : points_[q].location[axis]);
+    }
+  };
+  const auto fill_up = [&] {
+    if (link_pairs_.empty()) return;
+    for (; sorted.size() % kLanes != 0; sorted.push_back({-1, -1, {}})) fixed_end(-1, -1);
+    link_pairs_.back().end = sorted.size();
+  };
   for (const std::size_t i : order) {
-    place[i] = sorted.size();
     const Segment& s = segments_[i];
     const auto [moving, a, b] = links(s);
-    if (!moving) {
-      if (link_pairs_.empty() || link_pairs_.back().a != a || link_pairs_.back().b != b)
-        link_pairs_.push_back({a, b, sorted.size(), sorted.size()});
-      ++link_pairs_.back().end;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        end_a_[axis].push_back(points_[s.a].location[axis]);
-        end_b_[axis].push_back(points_[s.b].location[axis]);
+    if (moving || link_pairs_.empty() || link_pairs_.back().a != a || link_pairs_.back().b != b) {
+      if (end_a_[0].size() == sorted.size()) fill_up();
+      if (!moving) {
+        LinkPair pair{a, b, sorted.size(), sorted.size(), 0, {}, {}};
+        for (std::size_t t = s.terms[0]; t < s.terms[1]; ++t) {
+          pair.coordinates.push_back(terms_[t].coordinate);
+          pair.signs.push_back(terms_[t].sign);
+        }
+        most_pair_coordinates_ = std::max(most_pair_coordinates_, pair.coordinates.size());
+        link_pairs_.push_back(pair);
       }
     }
+    place[i] = sorted.size();
+    if (!moving) fixed_end(s.a, s.b);
     sorted.push_back(s);
   }
+  if (end_a_[0].size() == sorted.size()) fill_up();
   segments_ = sorted;
   for (int& s : variant_segments_) s = static_cast<int>(place[s]);
+  sort_terms();
+}
+
+/// Terms in the order in which they are computed: of link pairs by coordinate and segment, then those of moving points.
+void MusclePaths::sort_terms() {
+  std::vector<std::size_t> place(terms_.size());
+  std::vector<Term> sorted;
+  for (LinkPair& pair : link_pairs_) {
+    pair.terms = sorted.size();
+    for (std::size_t j = 0; j < pair.coordinates.size(); ++j) {
+      for (std::size_t i = pair.first; i < pair.end; ++i) {
+        const Segment& s = segments_[i];
+        if (s.a >= 0) place[s.terms[0] + j] = sorted.size();
+        sorted.push_back(s.a >= 0 ? terms_[s.terms[0] + j] : Term{});
+      }
+    }
+  }
+  for (std::size_t i = link_pairs_.empty() ? 0 : link_pairs_.back().end; i < segments_.size(); ++i) {
+    Segment& s = segments_[i];
+    const std::size_t first = sorted.size();
+    for (std::size_t t = s.terms[0]; t < s.terms[1]; ++t) {
+      place[t] = sorted.size();
+      sorted.push_back(terms_[t]);
+    }
+    s.terms = {first, sorted.size()};
+  }
+  terms_ = sorted;
+  for (Add& add : variant_adds_) add.term = static_cast<std::uint32_t>(place[add.term]);
 }
 
 void MusclePaths::list_points() {
-  std::set<int> for_lengths;
+  std::set<int> needed;
   for (const int m : general_)
-    for (const PathStation& s : muscles_[m].stations) for_lengths.insert(s.point);
-  std::set<int> for_all = for_lengths;
-  const std::size_t together = link_pairs_.empty() ? 0 : link_pairs_.back().end;
-  for (std::size_t i = 0; i < segments_.size(); ++i) {
-    for (const int p : {segments_[i].a, segments_[i].b}) {
-      if (i >= together) for_lengths.insert(p);
-      for_all.insert(p);
-    }
-  }
+    for (const PathStation& s : muscles_[m].stations) needed.insert(s.point);
+  for (std::size_t i = link_pairs_.empty() ? 0 : link_pairs_.back().end; i < segments_.size(); ++i)
+    needed.insert({segments_[i].a, segments_[i].b});
   // Points fixed to the ground stay where they are; moving ones are placed separately.
-  const auto placed = [&](int p) {
-    const Point& point = points_[p];
-    return point.link != 0 && point.moving < 0;
-  };
-  std::copy_if(for_lengths.begin(), for_lengths.end(), std::back_inserter(points_for_lengths_), placed);
-  std::copy_if(for_all.begin(), for_all.end(), std::back_inserter(points_for_all_), placed);
+  std::copy_if(needed.begin(), needed.end(), std::back_inserter(points_in_ground_),
+               [&](int p) { return points_[p].link != 0 && points_[p].moving < 0; });
 }
 
 }  // namespace veridyn::muscle

@@ -112,6 +112,8 @@ class MusclePaths {
     std::array<int, 3> coordinate{-1, -1, -1};
     std::array<double, 3> low{}, high{};  ///< of the coordinate's range; beyond it the point stays, as OpenSim's does
     std::array<numerics::PiecewisePolynomial, 3> location;
+    std::array<double, 3> still{};             ///< where it has no coordinate
+    std::array<std::size_t, 3> with{0, 1, 2};  ///< the first axis that has the same coordinate
   };
   struct Object {
     std::string name;
@@ -134,7 +136,7 @@ class MusclePaths {
   struct Term {
     int coordinate = 0;
     int sign = 0;     ///< of the rigid motion: +1 it moves b, -1 it moves a, 0 neither
-    int moving = -1;  ///< else: a moving point's axis, 3 index + axis
+    int moving = -1;  ///< else: of a moving point, 3 index + the first axis that has the coordinate
   };
   /// A pair of points and an object, shared by all muscles that have it.
   struct Span {
@@ -179,11 +181,19 @@ class MusclePaths {
     std::size_t segments = 0, end_segments = 0;  ///< those between links, in variant_segments_
     std::size_t adds = 0, end_adds = 0;          ///< in variant_adds_
   };
-  /// Segments whose ends are fixed to the same two links.
+  /// A term of a gradient.
+  struct Add {
+    std::uint32_t term = 0, pair = 0;
+  };
+  /// Segments whose ends are fixed to the same two links. They depend on the same coordinates.
   struct LinkPair {
     int a = 0, b = 0;
-    std::size_t first = 0, end = 0;
+    std::size_t first = 0, end = 0;  ///< a multiple of kLanes; what is left over is of no path
+    std::size_t terms = 0;           ///< of the first coordinate, then those of the next one, ...
+    std::vector<int> coordinates;
+    std::vector<double> signs;  ///< +1: it moves b, -1: it moves a
   };
+  static constexpr std::size_t kLanes = 4;           ///< segments that are computed together
   static constexpr std::size_t kMostWraps = 32;      ///< of a path
   static constexpr std::size_t kMostConditions = 4;  ///< of a path that is compiled into variants
 
@@ -200,6 +210,7 @@ class MusclePaths {
   void compile_path(int muscle);
   void compile_straight(int muscle);
   void sort_segments();
+  void sort_terms();
   void list_points();
   [[nodiscard]] std::vector<int> coordinates_of(const Path& path) const;
   [[nodiscard]] bool moves(int coordinate, int link) const {
@@ -223,13 +234,14 @@ class MusclePaths {
   std::vector<Condition> conditions_;
   std::vector<Variant> variants_;
   std::vector<int> variant_segments_;
-  std::vector<std::array<std::size_t, 2>> variant_adds_;  ///< term -> pair
+  std::vector<Add> variant_adds_;
   /// segments_ from 0 to the end of the last pair have fixed ends: contiguous, so that they are computed together.
   std::vector<LinkPair> link_pairs_;
   std::array<std::vector<double>, 3> end_a_, end_b_;  ///< of those, by axis, in their links
-  std::vector<int> points_for_lengths_, points_for_all_;
+  std::vector<int> points_in_ground_;                 ///< those that wraps and moving points need there
   std::size_t most_stations_ = 0;
   std::size_t most_wraps_ = 0;
+  std::size_t most_pair_coordinates_ = 0;
 };
 
 }  // namespace veridyn::muscle

@@ -19,6 +19,7 @@ PathWorkspace<Scalar>::PathWorkspace(const MusclePaths& paths)
       moving_slope(3 * paths.moving_.size()),
       segment_length(paths.segments_.size()),
       term(paths.terms_.size()),
+      local_column(paths.most_pair_coordinates_),
       object(paths.objects_.size()),
       span(paths.spans_.size()),
       span_known(paths.spans_.size(), 0),
@@ -42,19 +43,19 @@ PathWorkspace<Scalar>::PathWorkspace(const MusclePaths& paths)
 template <typename Scalar>
 void MusclePaths::lengths(const Kinematics<Scalar>& kinematics, const Scalar* q,
                           PathWorkspace<Scalar>& workspace) const {
-  PathSolver<Scalar>(*this, kinematics, q, workspace, PathPlaces::kForLengths).template all<false>();
+  PathSolver<Scalar>(*this, kinematics, q, workspace, PathPlaces::kNeeded).template all<false>();
 }
 
 template <typename Scalar>
 void MusclePaths::evaluate(const Kinematics<Scalar>& kinematics, const Scalar* q,
                            PathWorkspace<Scalar>& workspace) const {
-  PathSolver<Scalar>(*this, kinematics, q, workspace, PathPlaces::kForAll).template all<true>();
+  PathSolver<Scalar>(*this, kinematics, q, workspace, PathPlaces::kNeeded).template all<true>();
 }
 
 template <typename Scalar>
 void MusclePaths::evaluate(const Kinematics<Scalar>& kinematics, const Scalar* q, PathWorkspace<Scalar>& workspace,
                            std::span<const std::uint8_t> skip) const {
-  PathSolver<Scalar>(*this, kinematics, q, workspace, PathPlaces::kForAll).template all<true>(skip);
+  PathSolver<Scalar>(*this, kinematics, q, workspace, PathPlaces::kNeeded).template all<true>(skip);
 }
 
 template <typename Scalar>

@@ -10,9 +10,8 @@ namespace veridyn::muscle {
 
 /// Which points `PathSolver` computes the ground positions of.
 enum class PathPlaces {
-  kForLengths,  ///< those that lengths need
-  kForAll,      ///< those that lengths and gradients need
-  kEvery,       ///< all, for drawings and checks
+  kNeeded,  ///< those that lengths and gradients need
+  kEvery,   ///< all, for drawings and checks
 };
 
 /// View of compiled paths, the kinematics of one pose and a workspace, all of which must outlive it: evaluates the
@@ -47,7 +46,9 @@ class PathSolver {
   void place(PathPlaces places);
   template <bool kGradient>
   void segments();
-  void lengths_between(const MusclePaths::LinkPair& pair);
+  /// All segments of two links.
+  template <bool kGradient>
+  void segments_between(const MusclePaths::LinkPair& pair);
 
   // path_solver_wrapping.hpp
   /// What an object does to one segment, in ground; true if it wraps.
@@ -87,10 +88,9 @@ class PathSolver {
   // path_solver_length.hpp
   template <bool kGradient>
   Scalar general(const Path& path, PathFlag& flag);
-  /// Length over the objects of `mask`, of which the path comes off those of `beyond`; its gradient times `factor`
-  /// added.
+  /// Length over the objects of `mask`, of which those of `fading` count in part; its gradient times `factor` added.
   template <bool kGradient>
-  Scalar letting_go(const Path& path, unsigned mask, unsigned beyond, const Scalar& factor, PathFlag& flag);
+  Scalar letting_go(const Path& path, unsigned mask, unsigned fading, const Scalar& factor);
   /// Length of the nodes, and its gradient times `factor`.
   template <bool kGradient>
   Scalar measure(const Path& path, std::size_t n, const Scalar& factor);
@@ -112,7 +112,6 @@ class PathSolver {
   SpatialVector<Scalar>* by_link_ = nullptr;  ///< where `add_string` adds forces of `tension_`; null: nowhere
   Scalar tension_{};
   std::size_t n_stations_ = 0;
-  unsigned let_go_ = 0;  ///< objects that the path measured last has come off
   bool settled_ = true;  ///< what `settle` did last
   int side_ = 0;
   bool repeats_ = false;     ///< this side's solution is the best path so far

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "veridyn/muscle/path/path_solver.hpp"
-#include "veridyn/muscle/path/wrap_end.hpp"
 
 /// Length and gradient of a path whose nodes are known, and of one that comes off cylinders.
 namespace veridyn::muscle {
@@ -12,15 +11,14 @@ template <typename Scalar>
 template <bool kGradient>
 inline Scalar PathSolver<Scalar>::general(const Path& path, PathFlag& flag) {
   stations(path);
-  let_go_ = 0;
   if (n_stations_ < 2) return Scalar(0.0);
   const bool any = detect(path, flag);
-  unsigned beyond = 0;
+  unsigned fading = 0;
   for (std::size_t i = 0; any && i < path.wraps.size(); ++i)
-    if (w_.first_segment[i] >= 0 && w_.first[i]->beyond > Scalar(0.0)) beyond |= 1u << i;
-  if (beyond == 0 || paths_.mode_ == WrapMode::kAsOpenSim)
+    if (w_.first_segment[i] >= 0 && w_.first[i]->weight < Scalar(1.0)) fading |= 1u << i;
+  if (fading == 0 || paths_.mode_ == WrapMode::kAsOpenSim)
     return measure<kGradient>(path, solve(path, any ? ~0u : 0u), Scalar(1.0));
-  return letting_go<kGradient>(path, ~0u, beyond, Scalar(1.0), flag);
+  return letting_go<kGradient>(path, ~0u, fading, Scalar(1.0));
 }
 
 template <typename Scalar>
@@ -34,36 +32,25 @@ inline void PathSolver<Scalar>::pull(int muscle, const Scalar& tension, SpatialV
 
 template <typename Scalar>
 template <bool kGradient>
-inline Scalar PathSolver<Scalar>::letting_go(const Path& path, unsigned mask, unsigned beyond, const Scalar& factor,
-                                             PathFlag& flag) {
-  if (beyond == 0) return measure<kGradient>(path, solve(path, mask), factor);
+inline Scalar PathSolver<Scalar>::letting_go(const Path& path, unsigned mask, unsigned fading, const Scalar& factor) {
+  if (fading == 0) return measure<kGradient>(path, solve(path, mask), factor);
   std::size_t i = 0;
-  while ((beyond >> i & 1u) == 0) ++i;
-  const unsigned bit = 1u << i, others = beyond & ~bit;
+  while ((fading >> i & 1u) == 0) ++i;
+  const unsigned bit = 1u << i, others = fading & ~bit;
   const WrapResult<Scalar>& wrap = *w_.first[i];
-  const Scalar with = letting_go<false>(path, mask, others, factor, flag);
-  const Scalar without = letting_go<false>(path, mask & ~bit, others, factor, flag);
-  const internal::DetourLeft<Scalar> left = internal::detour_left<Scalar>(with - without, wrap.beyond, wrap.end_band);
-  if (left.none) {
-    let_go_ |= bit;
-  } else {
-    flag = std::max(flag, PathFlag::kFading);
-  }
+  const Scalar with = letting_go<kGradient>(path, mask, others, Scalar(factor * wrap.weight));
+  const Scalar without = letting_go<kGradient>(path, mask & ~bit, others, Scalar(factor * (Scalar(1.0) - wrap.weight)));
   if constexpr (kGradient) {
-    letting_go<true>(path, mask & ~bit, others, Scalar(factor * (Scalar(1.0) - left.by_detour)), flag);
-    if (!left.none) {
-      letting_go<true>(path, mask, others, Scalar(factor * left.by_detour), flag);
-      const Node a = w_.stations[w_.first_segment[i]];
-      const Node b = w_.stations[w_.first_segment[i] + 1];
-      const Scalar change = factor * left.by_beyond;
-      const int link = paths_.objects_[path.wraps[i].object].link;
-      add_string(path, change, a.x, wrap.beyond_p, link, a.link);
-      add_string(path, change, b.x, wrap.beyond_q, link, b.link);
-      add_moving(path, change, a.point, wrap.beyond_p);
-      add_moving(path, change, b.point, wrap.beyond_q);
-    }
+    const Node a = w_.stations[w_.first_segment[i]];
+    const Node b = w_.stations[w_.first_segment[i] + 1];
+    const Scalar change = factor * (with - without);
+    const int link = paths_.objects_[path.wraps[i].object].link;
+    add_string(path, change, a.x, wrap.weight_p, link, a.link);
+    add_string(path, change, b.x, wrap.weight_q, link, b.link);
+    add_moving(path, change, a.point, wrap.weight_p);
+    add_moving(path, change, b.point, wrap.weight_q);
   }
-  return without + left.length;
+  return without + wrap.weight * (with - without);
 }
 
 template <typename Scalar>
@@ -143,7 +130,7 @@ inline void PathSolver<Scalar>::add_moving(const Path& path, const Scalar& facto
   if (index < 0) return;
   const MusclePaths::MovingPoint& moving = paths_.moving_[index];
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (moving.coordinate[axis] < 0) continue;
+    if (moving.coordinate[axis] < 0 || moving.with[axis] != axis) continue;
     for (std::size_t k = path.pairs[0]; k < path.pairs[1]; ++k) {
       if (paths_.pairs_[k].coordinate != moving.coordinate[axis]) continue;
       w_.gradient[k] += factor * g.dot(w_.moving_slope[3 * static_cast<std::size_t>(index) + axis]);

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <type_traits>
 
 #include "veridyn/muscle/path/path_solver.hpp"
+#include "veridyn/muscle/path/segment_lanes.hpp"
 
 /// What needs no wrapping: points and wrap objects in ground, straight segments, paths that are sums of them.
 namespace veridyn::muscle {
@@ -35,8 +37,8 @@ inline void PathSolver<Scalar>::all(std::span<const std::uint8_t> skip) {
     w_.length[path.muscle] = length;
     if constexpr (kGradient) {
       for (std::size_t a = variant.adds; a < variant.end_adds; ++a) {
-        const auto& [term, pair] = paths_.variant_adds_[a];
-        w_.gradient[pair] += w_.term[term];
+        const MusclePaths::Add& add = paths_.variant_adds_[a];
+        w_.gradient[add.pair] += w_.term[add.term];
       }
     }
   }
@@ -57,27 +59,34 @@ inline void PathSolver<Scalar>::place(PathPlaces places) {
     for (std::size_t i = 0; i < paths_.points_.size(); ++i)
       if (paths_.points_[i].moving < 0) at(i);
   } else {
-    for (const int i : places == PathPlaces::kForAll ? paths_.points_for_all_ : paths_.points_for_lengths_)
-      at(static_cast<std::size_t>(i));
+    for (const int i : paths_.points_in_ground_) at(static_cast<std::size_t>(i));
   }
   for (std::size_t i = 0; i < paths_.moving_.size(); ++i) {
     const MusclePaths::MovingPoint& moving = paths_.moving_[i];
     const Pose<Scalar>& pose = kinematics_.pose[paths_.points_[moving.point].link];
-    Vector location = pose * moving.in_link.translation;
-    for (int axis = 0; axis < 3; ++axis) {
-      const Vector direction = pose.rotation * moving.in_link.rotation.col(axis).template cast<Scalar>();
+    Vector place;
+    std::array<Vector, 3> slope;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
       const int c = moving.coordinate[axis];
-      numerics::FunctionValue<Scalar> f;
-      if (c >= 0 && (q_[c] < Scalar(moving.low[axis]) || q_[c] > Scalar(moving.high[axis]))) {
-        f.value = moving.location[axis]
-                      .evaluate(Scalar(q_[c] < Scalar(moving.low[axis]) ? moving.low[axis] : moving.high[axis]))
-                      .value;
-      } else {
-        f = moving.location[axis].evaluate(c >= 0 ? q_[c] : Scalar(0.0));
+      if (c < 0) {
+        place[axis] = Scalar(moving.still[axis]);
+        continue;
       }
-      location += direction * f.value;
-      w_.moving_slope[3 * i + axis] = direction * f.slope;
+      const bool below = q_[c]<Scalar(moving.low[axis]), above = q_[c]> Scalar(moving.high[axis]);
+      const Scalar clamped = below ? Scalar(moving.low[axis]) : (above ? Scalar(moving.high[axis]) : q_[c]);
+      const numerics::FunctionValue<Scalar> f = moving.location[axis].evaluate(clamped);
+      place[axis] = f.value;
+      const std::size_t kept = moving.with[axis];
+      if (kept == axis) slope[axis].setZero();
+      slope[kept][axis] = below || above ? Scalar(0.0) : f.slope;
     }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (moving.coordinate[axis] < 0 || moving.with[axis] != axis) continue;
+      w_.moving_slope[3 * i + axis] = pose.rotation * (moving.in_link.rotation.template cast<Scalar>() * slope[axis]);
+    }
+    const Vector in_link =
+        moving.in_link.rotation.template cast<Scalar>() * place + moving.in_link.translation.template cast<Scalar>();
+    const Vector location = pose.rotation * in_link + pose.position;
     w_.position[moving.point] = location;
   }
   for (std::size_t i = 0; i < paths_.objects_.size(); ++i) {
@@ -92,13 +101,10 @@ template <typename Scalar>
 template <bool kGradient>
 inline void PathSolver<Scalar>::segments() {
   using std::sqrt;
-  std::size_t first_in_ground = 0;
-  if constexpr (!kGradient) {
-    // Lengths alone do not need ground: one end is taken to the other's link, all segments of two links together.
-    for (const MusclePaths::LinkPair& pair : paths_.link_pairs_) lengths_between(pair);
-    if (!paths_.link_pairs_.empty()) first_in_ground = paths_.link_pairs_.back().end;
-  }
-  for (std::size_t i = first_in_ground; i < paths_.segments_.size(); ++i) {
+  for (const MusclePaths::LinkPair& pair : paths_.link_pairs_) segments_between<kGradient>(pair);
+  // Those with an end that moves in its link, in ground.
+  for (std::size_t i = paths_.link_pairs_.empty() ? 0 : paths_.link_pairs_.back().end; i < paths_.segments_.size();
+       ++i) {
     const MusclePaths::Segment& s = paths_.segments_[i];
     const Vector& a = w_.position[s.a];
     const Vector u = w_.position[s.b] - a;
@@ -123,31 +129,56 @@ inline void PathSolver<Scalar>::segments() {
 }
 
 template <typename Scalar>
-inline void PathSolver<Scalar>::lengths_between(const MusclePaths::LinkPair& pair) {
+template <bool kGradient>
+inline void PathSolver<Scalar>::segments_between(const MusclePaths::LinkPair& pair) {
   using std::sqrt;
+  // In the frame of the first link: one end stays, the other one is taken there, and so are the coordinates' motions.
   const Pose<Scalar>& to = kinematics_.pose[pair.a];
   const Pose<Scalar>& from = kinematics_.pose[pair.b];
   const Matrix3<Scalar> r = to.rotation.transpose() * from.rotation;
   const Vector t = to.rotation.transpose() * (from.position - to.position);
-  const double* ax = paths_.end_a_[0].data();
-  const double* ay = paths_.end_a_[1].data();
-  const double* az = paths_.end_a_[2].data();
-  const double* bx = paths_.end_b_[0].data();
-  const double* by = paths_.end_b_[1].data();
-  const double* bz = paths_.end_b_[2].data();
-  Scalar* length = w_.segment_length.data();
-  for (std::size_t i = pair.first; i < pair.end; ++i) {
-    const Scalar x = t.x() + r(0, 0) * bx[i] + r(0, 1) * by[i] + r(0, 2) * bz[i] - ax[i];
-    const Scalar y = t.y() + r(1, 0) * bx[i] + r(1, 1) * by[i] + r(1, 2) * bz[i] - ay[i];
-    const Scalar z = t.z() + r(2, 0) * bx[i] + r(2, 1) * by[i] + r(2, 2) * bz[i] - az[i];
-    length[i] = x * x + y * y + z * z;
+  const std::size_t n = pair.coordinates.size(), stride = pair.end - pair.first;
+  if constexpr (kGradient) {
+    for (std::size_t j = 0; j < n; ++j) {
+      const SpatialVector<Scalar>& column = kinematics_.columns[pair.coordinates[j]];
+      const Vector linear = column.linear + column.angular.cross(to.position);
+      w_.local_column[j].angular = to.rotation.transpose() * (column.angular * Scalar(pair.signs[j]));
+      w_.local_column[j].linear = to.rotation.transpose() * (linear * Scalar(pair.signs[j]));
+    }
   }
+  const auto& a = paths_.end_a_;
+  const auto& b = paths_.end_b_;
   if constexpr (std::is_same_v<Scalar, double>) {
-    // As an array, so that roots are taken two at a time.
-    Eigen::Map<Eigen::ArrayXd> roots(length + pair.first, pair.end - pair.first);
-    roots = roots.sqrt();
+    internal::SegmentLanes lanes;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      lanes.a[axis] = &a[axis][pair.first];
+      lanes.b[axis] = &b[axis][pair.first];
+    }
+    static_assert(sizeof(SpatialVector<double>) == 6 * sizeof(double));
+    lanes.n = stride;
+    lanes.r = r.data();
+    lanes.t = t.data();
+    lanes.length = &w_.segment_length[pair.first];
+    if (kGradient && n > 0) {
+      lanes.motion = w_.local_column[0].angular.data();
+      lanes.coordinates = n;
+      lanes.term = &w_.term[pair.terms];
+    }
+    internal::compute(lanes);
   } else {
-    for (std::size_t i = pair.first; i < pair.end; ++i) length[i] = sqrt(length[i]);
+    for (std::size_t i = pair.first; i < pair.end; ++i) {
+      const Vector x(Scalar(a[0][i]), Scalar(a[1][i]), Scalar(a[2][i]));
+      const Vector u = r * Vector(Scalar(b[0][i]), Scalar(b[1][i]), Scalar(b[2][i])) + (t - x);
+      const Scalar length = sqrt(u.squaredNorm());
+      w_.segment_length[i] = length;
+      if constexpr (kGradient) {
+        const Vector d = u / length;
+        const Vector m = x.cross(d);
+        for (std::size_t j = 0; j < n; ++j)
+          w_.term[pair.terms + j * stride + i - pair.first] =
+              w_.local_column[j].angular.dot(m) + w_.local_column[j].linear.dot(d);
+      }
+    }
   }
 }
 

@@ -16,8 +16,9 @@ template <typename Scalar>
 inline std::size_t PathSolver<Scalar>::nodes_of(int muscle) {
   PathFlag flag = PathFlag::kFine;
   const Path& path = paths_.muscles_[muscle];
-  general<false>(path, flag);
-  return solve(path, ~let_go_);
+  stations(path);
+  detect(path, flag);
+  return solve(path, ~0u);
 }
 
 template <typename Scalar>
@@ -86,9 +87,9 @@ inline bool PathSolver<Scalar>::wrap_between(const MusclePaths::Object& object, 
     r.gradient_p = frame.rotation * r.gradient_p;
     r.gradient_q = frame.rotation * r.gradient_q;
   }
-  if (r.beyond > Scalar(0.0)) {
-    r.beyond_p = frame.rotation * r.beyond_p;
-    r.beyond_q = frame.rotation * r.beyond_q;
+  if (r.weight < Scalar(1.0)) {
+    r.weight_p = frame.rotation * r.weight_p;
+    r.weight_q = frame.rotation * r.weight_q;
   }
   return true;
 }
@@ -152,6 +153,7 @@ inline bool PathSolver<Scalar>::detect(const Path& path, PathFlag& flag) {
       }
       if (r->meets) break;
     }
+    if (w_.first_segment[i] >= 0 && w_.first[i]->weight < Scalar(1.0)) flag = std::max(flag, PathFlag::kFading);
   }
   return any;
 }
@@ -414,7 +416,7 @@ inline std::size_t PathSolver<Scalar>::choose(std::size_t i, const MusclePaths::
         wrap_between(object, wrap.object, wrap, false, a.x, b.x, w_.fresh);
       }
     } else {
-      // How far it is beyond an end is that of the segment it was found on: here it counts fully.
+      // Only the segment that an object was found on lets go of it: here it counts fully.
       wrap_between(object, wrap.object, wrap, false, a.x, b.x, w_.fresh, &w_.memory[i]);
     }
     if (!r->wrapped()) continue;

@@ -42,6 +42,7 @@ struct PathWorkspace {
   std::vector<Vector> moving_slope;
   std::vector<Scalar> segment_length;
   std::vector<Scalar> term;
+  std::vector<SpatialVector<Scalar>> local_column;
   std::vector<Frame> object;
   std::vector<WrapResult<Scalar>> span;
   std::vector<std::uint8_t> span_known;

@@ -50,19 +50,18 @@ inline CylinderPass cylinder_pass(const WrapCylinder& cylinder, double px, doubl
   return pass;
 }
 
-/// Both ends outside `radius`, which is below the cylinder's own where an end was lifted. Returns the slope of
-/// `result.beyond` with respect to it.
+/// Both ends outside `radius`, which is below the cylinder's own where an end was lifted.
 template <typename Scalar>
-Scalar wrap_outside(const WrapCylinder& cylinder, const CylinderPass& pass, const Scalar& radius,
-                    const Eigen::Matrix<Scalar, 3, 1>& p, const Eigen::Matrix<Scalar, 3, 1>& q,
-                    WrapResult<Scalar>& result) {
+Beyond<Scalar> wrap_outside(const WrapCylinder& cylinder, const CylinderPass& pass, const Scalar& radius,
+                            const Eigen::Matrix<Scalar, 3, 1>& p, const Eigen::Matrix<Scalar, 3, 1>& q,
+                            WrapResult<Scalar>& result) {
   using std::atan2;
   using std::sqrt;
   using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
   result.clear();
   result.meets = pass.meets;
   const Scalar none(0.0);
-  if (!pass.long_way && !pass.meets) return Scalar(0.0);
+  if (!pass.long_way && !pass.meets) return {};
   const Scalar p2 = p.x() * p.x() + p.y() * p.y();
   const Scalar q2 = q.x() * q.x() + q.y() * q.y();
   const Scalar radius2 = radius * radius;
@@ -95,10 +94,10 @@ Scalar wrap_outside(const WrapCylinder& cylinder, const CylinderPass& pass, cons
   result.direction2 = Vector3((q.x() - result.r2.x()) * s2, (q.y() - result.r2.y()) * s2, steep);
   result.gradient_p = -result.direction1;
   result.gradient_q = result.direction2;
-  if (!may_be_beyond(cylinder.radius, cylinder.half_length, value_of(p.z()), value_of(q.z()))) return none;
+  if (!may_be_beyond(cylinder.radius, cylinder.half_length, value_of(p.z()), value_of(q.z()))) return {};
   const Vector3 first(result.direction1.x() / flat, result.direction1.y() / flat, none);
   const Vector3 last(result.direction2.x() / flat, result.direction2.y() / flat, none);
-  return set_beyond<Scalar>(cylinder.radius, cylinder.half_length, radius, p, q, {planar, first, last, angle}, result);
+  return how_far_beyond<Scalar>(cylinder.radius, cylinder.half_length, radius, p, q, {planar, first, last, angle});
 }
 
 /// An end inside: that of its foot. Where nothing but the foot is touched, the path from there is straight.
@@ -113,17 +112,18 @@ void wrap_lifted_onto(const WrapCylinder& cylinder, const Lift<Scalar>& lift, bo
   WrapCylinder shrunk = cylinder;
   shrunk.radius = value_of(radius);
   const CylinderPass pass = cylinder_pass(shrunk, value_of(p.x()), value_of(p.y()), value_of(q.x()), value_of(q.y()));
-  Scalar beyond_radius = wrap_outside<Scalar>(cylinder, pass, radius, p, q, result);
+  Beyond<Scalar> beyond = wrap_outside<Scalar>(cylinder, pass, radius, p, q, result);
   if (!result.wrapped() && may_be_beyond(cylinder.radius, cylinder.half_length, value_of(p.z()), value_of(q.z()))) {
     const Vector3 across(q.x() - p.x(), q.y() - p.y(), Scalar(0.0));
     const Scalar planar = sqrt(across.squaredNorm() + Scalar(1e-24));
     const Vector3 along = across / planar;
-    beyond_radius = set_beyond<Scalar>(cylinder.radius, cylinder.half_length, radius, p, q,
-                                       {planar, along, along, Scalar(0.0)}, result);
+    beyond = how_far_beyond<Scalar>(cylinder.radius, cylinder.half_length, radius, p, q,
+                                    {planar, along, along, Scalar(0.0)});
   }
   finish_lifted(lift, radial, result);
-  if (result.beyond > Scalar(0.0))
-    pull_back<Scalar>(lift, false, beyond_radius * Scalar(cylinder.radius), result.beyond_p, result.beyond_q);
+  if (!beyond.any()) return;
+  pull_back<Scalar>(lift, false, beyond.by_radius * Scalar(cylinder.radius), beyond.by_p, beyond.by_q);
+  let_go<Scalar>(cylinder.radius, lift.p.at, lift.q.at, beyond, result);
 }
 
 template <typename Scalar>
@@ -134,7 +134,8 @@ void wrap_onto(const WrapCylinder& cylinder, const Eigen::Matrix<Scalar, 3, 1>& 
     const double w = 1.0 / (cylinder.radius * cylinder.radius);
     return wrap_lifted_onto(cylinder, lift_ends<Scalar>(Eigen::Vector3d(w, w, 0.0), p, q), radial, result);
   }
-  wrap_outside<Scalar>(cylinder, pass, Scalar(cylinder.radius), p, q, result);
+  const Beyond<Scalar> beyond = wrap_outside<Scalar>(cylinder, pass, Scalar(cylinder.radius), p, q, result);
+  if (beyond.any()) let_go<Scalar>(cylinder.radius, p, q, beyond, result);
 }
 
 // In muscle_path_evaluation.cpp.
@@ -150,18 +151,12 @@ extern template void wrap_onto<double>(const WrapCylinder&, const Eigen::Vector3
 /// a wall from the axis to infinity on the inactive side: the path never crosses it, so it may go round the longer way
 /// even where the segment does not meet the cylinder. That is OpenSim's choice except where both ends lie on the
 /// inactive side and the segment misses the cylinder, which OpenSim wraps and a string would not. Beyond the cylinder's
-/// ends the path lets go (`wrap_end.hpp`): `beyond` says how far it is, and it is straight where it has.
+/// ends the path lets go (`wrap_end.hpp`).
 template <typename Scalar>
 [[nodiscard]] WrapResult<Scalar> wrap(const WrapCylinder& cylinder, const Eigen::Matrix<Scalar, 3, 1>& p,
                                       const Eigen::Matrix<Scalar, 3, 1>& q) {
   WrapResult<Scalar> result;
   internal::wrap_onto(cylinder, p, q, true, result);
-  if (result.wrapped() && result.beyond > Scalar(0.0)) {
-    using std::sqrt;
-    const Scalar straight = sqrt((q - p).squaredNorm());
-    if (internal::detour_left<Scalar>(result.length - straight, result.beyond, result.end_band).none)
-      result.status = WrapStatus::kStraight;
-  }
   return result;
 }
 

@@ -38,12 +38,11 @@ struct WrapResult {
   /// dL/dP and dL/dQ: -direction1 and direction2 unless an end was lifted.
   Vector3 gradient_p = Vector3::Zero();
   Vector3 gradient_q = Vector3::Zero();
-  /// How far the path is beyond a cylinder's end [m], 0: not at all; its derivatives with respect to P, Q, and the
-  /// least way over which it lets go.
-  Scalar beyond{};
-  Vector3 beyond_p = Vector3::Zero();
-  Vector3 beyond_q = Vector3::Zero();
-  double end_band = 0.0;
+  /// How much of the wrap counts, 0..1: below 1 where the path lets go of a cylinder; its derivatives with respect to
+  /// P, Q.
+  Scalar weight{1.0};
+  Vector3 weight_p = Vector3::Zero();
+  Vector3 weight_q = Vector3::Zero();
   /// How deep an end lies inside, in radii; 0 outside. Above 0, `surface_length` is what is missing from the straight
   /// parts to `length`.
   double depth = 0.0;
@@ -58,7 +57,7 @@ struct WrapResult {
   /// Straight, without touching what only a wrap sets: most segments miss most objects.
   void clear() {
     status = WrapStatus::kStraight;
-    beyond = Scalar(0.0);
+    weight = Scalar(1.0);
     depth = 0.0;
     meets = true;
     spread = 1.0;
