@@ -117,6 +117,20 @@ TEST(OsimMuscle, HasPointsThatActInARangeOrMoveWithACoordinate) {
   EXPECT_NEAR(m.points[2].moving_location[1].evaluate(0.3).value, -0.05, 1e-15);
 }
 
+TEST(OsimMuscle, MayBeginOrEndWithAConditionalPointIfTwoOthersAreAlwaysThere) {
+  const std::string conditional =
+      "<ConditionalPathPoint name=\"c\"><socket_parent_frame>/ground</socket_parent_frame><location>0.05 0.05 0"
+      "</location><socket_coordinate>/jointset/hinge/swing</socket_coordinate><range>-0.5 1.5</range>"
+      "</ConditionalPathPoint>";
+  const Muscle m = pendulum(muscle_of("Thelen2003Muscle", "", conditional + kPoints + conditional)).muscles.at(0);
+  ASSERT_EQ(m.points.size(), 4U);
+  EXPECT_EQ(m.points.front().kind, PathPointKind::kConditional);
+  EXPECT_EQ(m.points.back().kind, PathPointKind::kConditional);
+  const std::size_t cut = kPoints.find("<PathPoint name=\"b\"");
+  EXPECT_THAT(refused(muscle_of("Thelen2003Muscle", "", kPoints.substr(0, cut) + conditional)),
+              HasSubstr("PathPointSet: 1 of 2 points are not conditional; at least two must be"));
+}
+
 // Ranges count from one, the last point included; below one means "from the first" and "to the last".
 TEST(OsimMuscle, WrapsOverPartOfItsPath) {
   const auto wrap = [](const std::string& range) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -184,8 +185,9 @@ TEST(MusclePaths, ReproduceOpenSimsOwnWrapInItsComparisonMode) {
 void expect_believable_arms(const Model& model, int poses) {
   const test::ArmCounts counts = test::count_arms(model, poses);
   testing::Test::RecordProperty(
-      model.name, fmt::format("{}: {} stick out, {} are no slopes, {} of them unnamed, largest {:.1f} mm", counts.arms,
-                              counts.stick_out, counts.no_slope, counts.unnamed, 1e3 * counts.largest));
+      model.name, fmt::format("{}: {} stick out, {} are no slopes, {} of them "
+                              "unnamed, largest {:.1f} mm",
+                              counts.arms, counts.stick_out, counts.no_slope, counts.unnamed, 1e3 * counts.largest));
   EXPECT_GT(counts.arms, poses);
   EXPECT_EQ(counts.stick_out, 0) << counts.where;
   EXPECT_EQ(counts.unnamed, 0) << counts.where;
@@ -343,6 +345,59 @@ TEST(MusclePaths, MovingPointsStayWhereTheRangeOfTheirCoordinateEnds) {
     EXPECT_EQ(std::abs(moving.moment_arm(m, 1) - fixed.moment_arm(m, 1)) < 1e-15, q != clamped) << q;
   }
   expect_differences(moving, {Eigen::Vector2d(0.1, -0.3), Eigen::Vector2d(0.1, 1.1), Eigen::Vector2d(0.1, 2.5)}, 1e-9);
+}
+
+// OpenSim leaves an inactive point out wherever it stands.
+TEST(MusclePaths, ThatBeginAndEndWithConditionalPointsBeginAndEndWithTheNextOneThere) {
+  Model model = load_model("arm").model();
+  const int m = model.muscle("brachialis");
+  const int humerus = model.body("humerus"), forearm = model.body("forearm");
+  const std::array<Eigen::Vector3d, 4> at{Eigen::Vector3d(0.03, 0.02, 0.01), Eigen::Vector3d(0.02, -0.1, 0.0),
+                                          Eigen::Vector3d(0.02, -0.03, 0.0), Eigen::Vector3d(0.01, -0.07, 0.02)};
+  for (const bool wrapping : {false, true}) {
+    Model made = model;
+    Muscle& muscle = made.muscles[m];
+    muscle.points.resize(4);
+    for (std::size_t i = 0; i < 4; ++i) {
+      PathPoint& point = muscle.points[i];
+      point = {};
+      point.name = fmt::format("p{}", i);
+      point.body = i < 2 ? humerus : forearm;
+      point.location = at[i];
+      if (i == 1 || i == 2) continue;
+      point.kind = PathPointKind::kConditional;
+      point.coordinate = 1;
+      point.low = i == 0 ? 0.5 : -10.0;
+      point.high = i == 0 ? 10.0 : 1.5;
+    }
+    // With an object far away the path is solved as those that wrap are.
+    muscle.wraps.resize(wrapping ? 1 : 0);
+    if (wrapping) {
+      muscle.wraps[0] = {};
+      muscle.wraps[0].object = static_cast<int>(made.wrap_objects.size());
+      WrapObject far;
+      far.name = "far";
+      far.shape = WrapShape::kSphere;
+      far.body = humerus;
+      far.placement.translation = {5.0, 0.0, 0.0};
+      far.dimensions = {0.01, 0.0, 0.0};
+      made.wrap_objects.push_back(far);
+    }
+    PosedArm arm(made);
+    for (const double elbow : {0.2, 1.0, 2.0}) {
+      arm.pose(Eigen::Vector2d(0.3, elbow));
+      std::array<Eigen::Vector3d, 4> x;
+      for (std::size_t i = 0; i < 4; ++i) {
+        const Mechanism::BodyPlace& place = arm.mechanism.body(i < 2 ? humerus : forearm);
+        x[i] = arm.kinematics.pose[place.link] * (place.in_link * at[i]);
+      }
+      double length = (x[2] - x[1]).norm();
+      if (elbow > 0.5) length += (x[1] - x[0]).norm();
+      if (elbow < 1.5) length += (x[3] - x[2]).norm();
+      EXPECT_NEAR(arm.workspace.length[m], length, 1e-15) << elbow << " " << wrapping;
+    }
+    expect_differences(arm, {Eigen::Vector2d(0.3, 0.2), Eigen::Vector2d(0.3, 1.0), Eigen::Vector2d(0.3, 2.0)}, 1e-9);
+  }
 }
 
 TEST(MusclePaths, RefuseWhatIsNotAPath) {

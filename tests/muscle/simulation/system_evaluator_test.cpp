@@ -47,6 +47,22 @@ TEST_F(SystemEvaluatorOfTheArm, SpeedsAreTheRatesOfValuesAndPaths) {
     EXPECT_NEAR(speed[m], (after[m] - evaluator.path_length()[m]) / (2.0 * h), 1e-7) << m;
 }
 
+TEST(SystemEvaluator, TakesTheFreeCoordinatesAndTheLockedOnesOfAPose) {
+  Model model = load_model("arm").model();
+  model.coordinates[0].locked = true;
+  const MusculoskeletalSystem system(model);
+  SystemEvaluator<double> evaluator(system), by_hand(system);
+  const Eigen::Vector2d q(0.4, 1.1), qdot(7.0, 0.3);
+  evaluator.set_pose(q.data(), qdot.data());
+  by_hand.hold(q.data());
+  by_hand.set_motion(&q(1), &qdot(1));
+  EXPECT_EQ(evaluator.q()[0], 0.4);
+  EXPECT_EQ(evaluator.q()[1], 1.1);
+  EXPECT_EQ(evaluator.qdot()[0], 0.0) << "locked";
+  EXPECT_EQ(evaluator.qdot()[1], 0.3);
+  for (std::size_t m = 0; m < 6; ++m) EXPECT_EQ(evaluator.path_length()[m], by_hand.path_length()[m]);
+}
+
 TEST_F(SystemEvaluatorOfTheArm, AForceOnACoordinateAddsToItsAcceleration) {
   const std::vector<double> x = state(0.9, 0.0);
   std::vector<double> rate(x.size()), pushed(x.size()), force{0.0, 2.0};

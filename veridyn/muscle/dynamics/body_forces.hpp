@@ -55,21 +55,34 @@ MovingFrame<Scalar> moving_frame(const Mechanism& mechanism, const Kinematics<Sc
           &kinematics.velocity[place.link]};
 }
 
-/// Spring from point to point: tension stiffness (distance - rest_length). None while the points coincide.
-template <typename Scalar, typename Receiver>
-void add_force(const PointSpring& spring, const Mechanism& mechanism, const Kinematics<Scalar>& kinematics,
-               Receiver* to) {
+/// A pull between a point of each of two bodies, as the members body_1, point_1, body_2, point_2 of `ends` say:
+/// `tension(distance, rate)` [N]. None while the points coincide.
+template <typename Ends, typename Scalar, typename Receiver, typename Tension>
+void add_pull(const Ends& ends, const Mechanism& mechanism, const Kinematics<Scalar>& kinematics,
+              const Tension& tension, Receiver* to) {
   using std::sqrt;
-  const auto a = moving_frame(mechanism, kinematics, spring.body_1, {.translation = spring.point_1});
-  const auto b = moving_frame(mechanism, kinematics, spring.body_2, {.translation = spring.point_2});
+  const auto a = moving_frame(mechanism, kinematics, ends.body_1, {.translation = ends.point_1});
+  const auto b = moving_frame(mechanism, kinematics, ends.body_2, {.translation = ends.point_2});
   const Vector3<Scalar> between = b.position - a.position;
   const Scalar square = between.squaredNorm();
   if (!(value_of(square) > 0.0)) return;
   const Scalar distance = sqrt(square);
-  const Vector3<Scalar> pull = between * (spring.stiffness * (distance - spring.rest_length) / distance);
+  const Vector3<Scalar> along = between / distance;
+  const Scalar rate = along.dot(b.velocity->at(b.position) - a.velocity->at(a.position));
+  const Vector3<Scalar> pull = along * Scalar(tension(distance, rate));
   const Vector3<Scalar> none = Vector3<Scalar>::Zero();
   add_force_at<Scalar>(mechanism, kinematics, a.link, a.position, pull, none, to);
   add_force_at<Scalar>(mechanism, kinematics, b.link, b.position, -pull, none, to);
+}
+
+/// Spring from point to point: tension stiffness (distance - rest_length).
+template <typename Scalar, typename Receiver>
+void add_force(const PointSpring& spring, const Mechanism& mechanism, const Kinematics<Scalar>& kinematics,
+               Receiver* to) {
+  const auto tension = [&](const Scalar& distance, const Scalar& /*rate*/) -> Scalar {
+    return (distance - Scalar(spring.rest_length)) * Scalar(spring.stiffness);
+  };
+  add_pull(spring, mechanism, kinematics, tension, to);
 }
 
 /// Bushing: of frame 2 in frame 1, angles t of a body-fixed x-y-z sequence and translation d are held by linear springs

@@ -40,23 +40,14 @@ void add_coordinate_expressions(const ExpressionForces& forces, const Scalar* q,
     tau[f.coordinate] += evaluate(f.force, std::array{q[f.coordinate], qdot[f.coordinate]});
 }
 
-/// A pull between two points. None while they coincide.
+/// A pull between two points.
 template <typename Scalar, typename Receiver>
 void add_force(const ExpressionPointForce& pull, const Mechanism& mechanism, const Kinematics<Scalar>& kinematics,
                Receiver* to) {
-  using std::sqrt;
-  const auto a = moving_frame(mechanism, kinematics, pull.body_1, {.translation = pull.point_1});
-  const auto b = moving_frame(mechanism, kinematics, pull.body_2, {.translation = pull.point_2});
-  const Vector3<Scalar> between = b.position - a.position;
-  const Scalar square = between.squaredNorm();
-  if (!(value_of(square) > 0.0)) return;
-  const Scalar distance = sqrt(square);
-  const Vector3<Scalar> along = between / distance;
-  const Scalar rate = along.dot(b.velocity->at(b.position) - a.velocity->at(a.position));
-  const Vector3<Scalar> force = along * evaluate(pull.force, std::array{distance, rate});
-  const Vector3<Scalar> none = Vector3<Scalar>::Zero();
-  add_force_at<Scalar>(mechanism, kinematics, a.link, a.position, force, none, to);
-  add_force_at<Scalar>(mechanism, kinematics, b.link, b.position, -force, none, to);
+  const auto tension = [&](const Scalar& distance, const Scalar& rate) {
+    return evaluate(pull.force, std::array{distance, rate});
+  };
+  add_pull(pull, mechanism, kinematics, tension, to);
 }
 
 /// A bushing whose springs are formulas of all its deflections.

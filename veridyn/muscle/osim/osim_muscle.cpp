@@ -222,9 +222,12 @@ void read_path(Context& context, const Element& element, std::vector<PathPoint>&
   }
   for (const Element& point : path.objects("PathPointSet")) points.push_back(read_point(context, point));
   if (points.size() < 2) element.fail("PathPointSet", fmt::format("{} points; a path has at least two", points.size()));
-  if (points.front().kind == PathPointKind::kConditional || points.back().kind == PathPointKind::kConditional) {
-    element.fail("PathPointSet", "a path cannot begin or end with a conditional point");
-  }
+  // A path begins and ends with the first and the last point that are there.
+  const auto always = std::count_if(points.begin(), points.end(),
+                                    [](const PathPoint& p) { return p.kind != PathPointKind::kConditional; });
+  if (always < 2)
+    element.fail("PathPointSet",
+                 fmt::format("{} of {} points are not conditional; at least two must be", always, points.size()));
   for (const Element& wrap : path.objects("PathWrapSet")) {
     wraps.push_back(read_path_wrap(context, wrap, points.size()));
   }

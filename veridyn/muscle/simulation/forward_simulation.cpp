@@ -241,7 +241,7 @@ StartState default_start(const Model& model) {
 MuscleTrajectory simulate_forward(const MusculoskeletalSystem& system, const StartState& start,
                                   const MuscleControls& controls, const ForwardOptions& options, Progress& progress) {
   check_start(system.model(), start);
-  const Assembly closed = assemble(system, start.q, start.qdot);
+  Assembly closed = assemble(system, start.q, start.qdot);
   const StateLayout& layout = system.layout();
   ControlsAtInstant signals(controls, system.muscles().size(), system.coordinates());
   SystemEvaluator<double> evaluator(system);
@@ -287,6 +287,7 @@ MuscleTrajectory simulate_forward(const MusculoskeletalSystem& system, const Sta
   result.steps = stepper.steps();
   result.evaluations = evaluator.evaluations();
   result.final_state = x;
+  result.assembly = std::move(closed);
   if (!result.usable()) result.trouble = largest_state(system, x.data());
   return result;
 }

@@ -10,6 +10,7 @@
 #include "veridyn/estimation/regression/regression_data.hpp"
 #include "veridyn/muscle/model/external_load.hpp"
 #include "veridyn/muscle/model/signals.hpp"
+#include "veridyn/muscle/simulation/assembly.hpp"
 #include "veridyn/muscle/simulation/musculoskeletal_system.hpp"
 
 namespace veridyn::muscle {
@@ -61,6 +62,7 @@ struct MuscleTrajectory {
   long evaluations = 0;
   std::string trouble;  ///< unless it completed: which state caused the end
   Eigen::VectorXd final_state;
+  Assembly assembly;  ///< of the start, with its loops closed
 
   [[nodiscard]] bool usable() const { return end == SimulationEnd::kCompleted; }
   /// How it ended, and when.

@@ -11,23 +11,14 @@ namespace {
 class InducedSolver {
  public:
   explicit InducedSolver(const MusculoskeletalSystem& system)
-      : system_(system),
-        evaluator_(system),
+      : evaluator_(system),
         rest_(system.mechanism()),
         tau_(Eigen::VectorXd::Zero(system.coordinates())),
-        z_(system.layout().free),
-        zdot_(z_.size()),
-        none_(z_.size()),
-        with_(z_.size()) {}
+        none_(system.layout().free),
+        with_(none_.size()) {}
 
   void set_state(const Eigen::VectorXd& q, const Eigen::VectorXd& qdot) {
-    const std::span<const int> free = system_.reduction().free();
-    for (std::size_t i = 0; i < free.size(); ++i) {
-      z_[i] = q(free[i]);
-      zdot_[i] = qdot(free[i]);
-    }
-    evaluator_.hold(q.data());
-    evaluator_.set_motion(z_.data(), zdot_.data());
+    evaluator_.set_pose(q.data(), qdot.data());
     tau_.setZero();
     static_cast<void>(evaluator_.dynamics().forward_dynamics(tau_.data(), nullptr, none_.data()));
   }
@@ -51,11 +42,10 @@ class InducedSolver {
   }
 
  private:
-  const MusculoskeletalSystem& system_;
   SystemEvaluator<double> evaluator_;
   Dynamics<double> rest_;
   Eigen::VectorXd tau_;
-  std::vector<double> z_, zdot_, none_, with_;
+  std::vector<double> none_, with_;
 };
 
 }  // namespace

@@ -45,9 +45,7 @@ class ReactionSolver {
         paths_(cut_.paths()),
         applied_(cut_.mechanism().links()),
         tau_(cut_.coordinates()),
-        z_(system.layout().free),
-        zdot_(z_.size()),
-        zddot_(z_.size()) {}
+        zddot_(system.layout().free) {}
 
   /// Forces of the row on all links; `dynamics().joint_force` holds what joints transmit afterwards.
   void solve(Eigen::Index row) {
@@ -74,13 +72,7 @@ class ReactionSolver {
 
  private:
   Eigen::VectorXd accelerations(const Eigen::VectorXd& q, const Eigen::VectorXd& qdot, Eigen::Index row) {
-    const std::span<const int> free = system_.reduction().free();
-    for (std::size_t i = 0; i < free.size(); ++i) {
-      z_[i] = q(free[i]);
-      zdot_[i] = qdot(free[i]);
-    }
-    evaluator_.hold(q.data());
-    evaluator_.set_motion(z_.data(), zdot_.data());
+    evaluator_.set_pose(q.data(), qdot.data());
     std::fill(tau_.begin(), tau_.end(), 0.0);
     for (Eigen::Index c = 0; c < moved_.reserve.cols(); ++c) tau_[c] = moved_.reserve(row, c);
     const auto pairs = system_.pairs();
@@ -118,7 +110,7 @@ class ReactionSolver {
   Dynamics<double> dynamics_;
   PathWorkspace<double> paths_;
   std::vector<SpatialVector<double>> applied_;
-  std::vector<double> tau_, z_, zdot_, zddot_;
+  std::vector<double> tau_, zddot_;
 };
 
 Eigen::Matrix3d axes_of(const Joint& joint, const Mechanism& mechanism, const Kinematics<double>& kinematics,

@@ -43,6 +43,9 @@ class SystemEvaluator {
 
   /// Positions and speeds, path lengths, speeds and gradients for free coordinates z; muscles are not evaluated.
   void set_motion(const Scalar* z, const Scalar* zdot);
+  /// The same for a pose and speeds of all coordinates, of which the free ones and the values of the locked ones are
+  /// taken.
+  void set_pose(const Scalar* q, const Scalar* qdot);
   /// The same for q and qdot of all coordinates, without regard to constraints. Both arrays must stay while results are
   /// read.
   void set_all(const Scalar* q, const Scalar* qdot);
@@ -83,6 +86,7 @@ class SystemEvaluator {
   PathWorkspace<Scalar> path_workspace_;
   PassiveWorkspace<Scalar> passive_;
   std::vector<DrivenMotion<Scalar>> driven_;
+  std::vector<Scalar> free_q_, free_qdot_;  ///< of `set_pose`
   const Scalar* q_ = nullptr;
   const Scalar* qdot_ = nullptr;
   std::vector<Scalar> tau_;

@@ -33,6 +33,8 @@ SystemEvaluator<Scalar>::SystemEvaluator(const MusculoskeletalSystem& system, Mu
       reduced_(system.mechanism(), system.reduction(), &system.loops()),
       path_workspace_(system.paths()),
       passive_(system.passive().template workspace<Scalar>()),
+      free_q_(system.layout().free),
+      free_qdot_(system.layout().free),
       tau_(system.coordinates()),
       length_(muscles_.size()),
       speed_(muscles_.size()),
@@ -78,6 +80,17 @@ void SystemEvaluator<Scalar>::set_motion(const Scalar* z, const Scalar* zdot) {
   q_ = reduced_.state().q.data();
   qdot_ = reduced_.state().qdot.data();
   update_paths();
+}
+
+template <typename Scalar>
+void SystemEvaluator<Scalar>::set_pose(const Scalar* q, const Scalar* qdot) {
+  const std::span<const int> free = system_->reduction().free();
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    free_q_[i] = q[free[i]];
+    free_qdot_[i] = qdot[free[i]];
+  }
+  hold(q);
+  set_motion(free_q_.data(), free_qdot_.data());
 }
 
 template <typename Scalar>
