@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/muscle/simulation/assembly.hpp"
 #include "veridyn/muscle/simulation/motion_analysis.hpp"
 #include "veridyn/muscle/simulation/wrap_bands.hpp"
 
@@ -54,19 +53,30 @@ MuscleResult forward(const MuscleStudy& study, Progress& progress) {
   const ForwardOptions options{
       .begin = study.begin, .end = study.end, .rate_Hz = study.rate_Hz, .accuracy = study.accuracy};
   MuscleResult result;
-  if (std::string moved = assembly_text(*study.system, assemble(*study.system, study.start.q, study.start.qdot));
-      !moved.empty())
-    result.warnings.push_back(std::move(moved));
   result.trajectory = simulate_forward(*study.system, study.start, study.controls, options, progress);
+  if (std::string moved = assembly_text(*study.system, result.trajectory.assembly); !moved.empty())
+    result.warnings.push_back(std::move(moved));
   result.controls = study.controls;
   result.reactions = reactions_of(study, result.trajectory, {});
   return result;
+}
+
+/// What is to be said of the loads of a model whose loops carry part of them.
+void note_loops(const MotionAnalysis::OpenLoop& open, MuscleResult& result) {
+  if (open.constraint.empty()) return;
+  result.warnings.emplace_back(
+      "closed loops carry part of the loads: the generalised forces are the smallest ones that give the motion");
+  constexpr double kOpen = 1e-3;
+  if (open.error > kOpen)
+    result.warnings.push_back(fmt::format("the motion does not close the model's loops: {} is open by {:.3g} at {:g} s",
+                                          open.constraint, open.error, open.time));
 }
 
 /// The rows of a prescribed motion as a result.
 MuscleResult result_of(const MuscleStudy& study, MotionAnalysis&& analysis) {
   MuscleResult result;
   check_loads(study, analysis, result);
+  note_loops(analysis.open_loop, result);
   MuscleTrajectory& t = result.trajectory;
   t.time = std::move(analysis.time);
   t.q = std::move(analysis.q);

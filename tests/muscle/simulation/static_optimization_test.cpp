@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <Eigen/QR>
 #include <cmath>
 #include <random>
 
@@ -189,6 +191,49 @@ TEST(StaticOptimization, RejectsOptionsThatMakeNoSense) {
   reversed[0].min_control = 0.5;
   reversed[0].max_control = 0.2;
   EXPECT_THROW(StaticOptimizer(reversed, {}), InputError);
+}
+
+// Along the motions that loops allow: as a problem of its own coordinates.
+TEST(StaticOptimization, BalancesAlongGivenDirectionsAlone) {
+  std::mt19937_64 generator(31);
+  int balanced = 0;
+  for (int trial = 0; trial < 20; ++trial) {
+    Problem q = random_problem(generator, 8, 4, ThelenCurves{});
+    const Eigen::MatrixXd directions =
+        Eigen::MatrixXd(Eigen::MatrixXd::NullaryExpr(
+                            4, 2, [&] { return std::uniform_real_distribution<double>(-1.0, 1.0)(generator); })
+                            .householderQr()
+                            .householderQ())
+            .leftCols(2);
+    StaticOptimizer along(q.muscles, {.reserve = {1.0, 2.0, 0.0, 0.5}});
+    StaticOptimizationFrame frame;
+    along.solve(q.arms, q.length, q.speed, q.required, frame, &directions);
+    ASSERT_EQ(frame.end, StaticEnd::kBalanced);
+    Eigen::VectorXd left = q.required - q.arms.transpose() * frame.force;
+    for (Eigen::Index j = 0; j < 4; ++j)
+      left(j) -= along.options().reserve[static_cast<std::size_t>(j)] * frame.reserve(j);
+    EXPECT_LT((directions.transpose() * left).norm(), 1e-8);
+    EXPECT_GT(left.norm(), 1e-3) << "what loops carry";
+    EXPECT_LT(frame.unbalanced.norm(), 1e-8);
+    // Reserves are as costly as muscles: c = r_j (N lambda)_j / 2.
+    for (Eigen::Index j = 0; j < 4; ++j)
+      EXPECT_NEAR(frame.reserve(j), 0.5 * along.options().reserve[static_cast<std::size_t>(j)] * frame.multiplier(j),
+                  1e-9);
+    // Without reserves: the same as the reduced problem.
+    StaticOptimizer free(q.muscles, {}), reduced(q.muscles, {});
+    StaticOptimizationFrame by_directions, by_hand;
+    free.solve(q.arms, q.length, q.speed, q.required, by_directions, &directions);
+    reduced.solve(q.arms * directions, q.length, q.speed, directions.transpose() * q.required, by_hand);
+    ASSERT_EQ(by_directions.end, by_hand.end);
+    if (by_hand.end != StaticEnd::kBalanced) continue;  // muscles only pull
+    ++balanced;
+    EXPECT_LT((by_directions.activation - by_hand.activation).cwiseAbs().maxCoeff(), 1e-9);
+    // A basis turned from frame to frame is the same problem.
+    const Eigen::MatrixXd turned = directions * Eigen::Rotation2Dd(0.8).toRotationMatrix();
+    free.solve(q.arms, q.length, q.speed, q.required, by_directions, &turned);
+    EXPECT_LT((by_directions.activation - by_hand.activation).cwiseAbs().maxCoeff(), 1e-8);
+  }
+  EXPECT_GT(balanced, 5);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "veridyn/muscle/simulation/motion_analysis.hpp"
 
+#include <Eigen/QR>
 #include <cmath>
 
 #include "veridyn/core/index.hpp"
@@ -46,9 +47,60 @@ MotionAnalysis empty_analysis(const MusculoskeletalSystem& system, const std::ve
   return a;
 }
 
+/// View of a system: what the closed loops of its model carry.
+class LoopShare {
+ public:
+  explicit LoopShare(const MusculoskeletalSystem& system)
+      : system_(system), n_(signed_index(system.reduction().free().size())), jacobian_(system.loops().rows(), n_) {}
+
+  [[nodiscard]] bool any() const { return jacobian_.rows() > 0; }
+
+  /// Looks at the loops of a pose. The evaluator is left at it, with the speeds of free coordinates only.
+  void set_pose(const Eigen::VectorXd& q, const Eigen::VectorXd& qdot, double time, SystemEvaluator<double>& evaluator,
+                MotionAnalysis::OpenLoop& open) {
+    evaluator.set_pose(q.data(), qdot.data());
+    loops_ = &evaluator.dynamics().update_loops();
+    for (int r = 0; r < loops_->rows(); ++r) {
+      jacobian_.row(r) = Eigen::Map<const Eigen::RowVectorXd>(loops_->jacobian(r), n_);
+      const double error = std::abs(loops_->row(r).error);
+      if (!open.constraint.empty() && error <= open.error) continue;
+      open = {loops_->loops().of_row(r).text, error, time};
+    }
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(jacobian_.transpose());
+    qr.setThreshold(LoopSolver<double>::kRounding);
+    const Eigen::MatrixXd basis = qr.householderQ();
+    directions_ = basis.rightCols(n_ - qr.rank());
+  }
+
+  /// Orthonormal: the motions of the free coordinates that the loops allow.
+  [[nodiscard]] const Eigen::MatrixXd& directions() const { return directions_; }
+
+  /// Takes what the loops carry off the forces that a motion needs.
+  template <typename Row>
+  void take_off(const Eigen::VectorXd& slope, const Kinematics<double>& kinematics, Row&& moment) {
+    Eigen::VectorXd required = Eigen::VectorXd::Zero(n_), carried = Eigen::VectorXd::Zero(slope.size());
+    for (Eigen::Index c = 0; c < slope.size(); ++c) {
+      const int root = system_.reduction().free_root(static_cast<int>(c));
+      if (root >= 0) required(root) += slope(c) * moment(c);
+    }
+    const estimation::RowMatrix rows = jacobian_;
+    const Eigen::VectorXd wanted = jacobian_ * required;
+    loops_->solve(rows.data(), wanted.data());
+    loops_->add_generalized_forces(kinematics, carried.data());
+    moment -= carried.transpose();
+  }
+
+ private:
+  const MusculoskeletalSystem& system_;
+  Eigen::Index n_;
+  Eigen::MatrixXd jacobian_, directions_;
+  LoopSolver<double>* loops_ = nullptr;
+};
+
 /// Sets the evaluator to an instant and writes what inverse dynamics finds there into a row.
 void analyse(const Instant& now, Eigen::Index row, const ExternalLoads* external, SystemEvaluator<double>& evaluator,
-             MotionAnalysis& a) {
+             LoopShare& loops, const Eigen::VectorXd& slope, MotionAnalysis& a) {
+  if (loops.any()) loops.set_pose(now.q, now.qdot, a.time[row], evaluator, a.open_loop);
   evaluator.set_all(now.q.data(), now.qdot.data());
   a.q.row(row) = now.q;
   a.qdot.row(row) = now.qdot;
@@ -58,6 +110,7 @@ void analyse(const Instant& now, Eigen::Index row, const ExternalLoads* external
     evaluator.add_external_forces(external, a.time[row], a.external.row(row).data());
     a.moment.row(row) -= a.external.row(row);
   }
+  if (loops.any()) loops.take_off(slope, evaluator.dynamics().kinematics(), a.moment.row(row));
   for (Eigen::Index m = 0; m < a.path_length.cols(); ++m) {
     a.path_length(row, m) = evaluator.path_length()[m];
     a.path_speed(row, m) = evaluator.path_speed()[m];
@@ -85,15 +138,17 @@ MotionAnalysis analyse_motion(const MusculoskeletalSystem& system, const Motion&
                               const std::vector<double>& time) {
   MotionAnalysis analysis = empty_analysis(system, time, motion.external != nullptr);
   SystemEvaluator<double> evaluator(system);
-  for (std::size_t i = 0; i < time.size(); ++i)
-    analyse(instant_of(motion, rest, system.reduction(), time[i]), i, motion.external.get(), evaluator, analysis);
+  LoopShare loops(system);
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    const Instant now = instant_of(motion, rest, system.reduction(), time[i]);
+    analyse(now, i, motion.external.get(), evaluator, loops, coupled_slopes(now.q, system.reduction()), analysis);
+  }
   return analysis;
 }
 
 MotionAnalysis optimise_motion(const MusculoskeletalSystem& system, const Motion& motion, const Eigen::VectorXd& rest,
                                const std::vector<double>& time, const StaticOptimizationOptions& options,
                                Progress& progress) {
-  system.refuse_loops("static optimization");
   MotionAnalysis analysis = empty_analysis(system, time, motion.external != nullptr);
   const auto rows = signed_index(time.size());
   const auto muscles = signed_index(system.muscles().size());
@@ -111,12 +166,13 @@ MotionAnalysis optimise_motion(const MusculoskeletalSystem& system, const Motion
   StaticOptimizer optimizer(muscle_parameters(system.model()), reduced);
   StaticOptimizationFrame frame;
   SystemEvaluator<double> evaluator(system);
+  LoopShare loops(system);
   Eigen::MatrixXd arms(muscles, n);
   Eigen::VectorXd required(n), limits(rest.size());
   for (std::size_t i = 0; i < time.size(); ++i) {
     const Instant now = instant_of(motion, rest, system.reduction(), time[i]);
-    analyse(now, i, motion.external.get(), evaluator, analysis);
     const Eigen::VectorXd slope = coupled_slopes(now.q, system.reduction());
+    analyse(now, i, motion.external.get(), evaluator, loops, slope, analysis);
     limits.setZero();
     evaluator.add_passive_forces(limits.data());
     required.setZero();
@@ -131,7 +187,7 @@ MotionAnalysis optimise_motion(const MusculoskeletalSystem& system, const Motion
       if (root >= 0) arms(pairs[k].muscle, root) -= slope(pairs[k].coordinate) * evaluator.path_gradient()[k];
     }
     optimizer.solve(arms, analysis.path_length.row(i).transpose(), analysis.path_speed.row(i).transpose(), required,
-                    frame);
+                    frame, loops.any() ? &loops.directions() : nullptr);
     analysis.activation.row(i) = frame.activation;
     analysis.force.row(i) = frame.force;
     for (Eigen::Index f = 0; f < n && !reduced.reserve.empty(); ++f) {

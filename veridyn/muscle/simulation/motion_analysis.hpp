@@ -23,6 +23,12 @@ struct MotionAnalysis {
   estimation::RowMatrix force;          ///< of each muscle, as the formulation counts it [N]
   estimation::RowMatrix reserve;        ///< generalised force of the reserves [N m or N]
   std::vector<std::size_t> infeasible;  ///< frames whose moments could not be produced
+  // Of a model with closed loops.
+  struct OpenLoop {
+    std::string constraint;  ///< empty: the model has no loops
+    double error = 0.0;      ///< largest error of an equation of a loop [m or 1]
+    double time = 0.0;       ///< [s]
+  } open_loop;
   bool interrupted = false;
 };
 
@@ -33,13 +39,15 @@ struct MotionAnalysis {
 [[nodiscard]] std::vector<double> frame_times(double begin, double end, double rate_Hz);
 
 /// Inverse dynamics of a motion: M qddot + h as in `inverse_dynamics`, for every coordinate, less what the motion's
-/// external loads contribute. `rest` gives coordinates that are not in the motion.
+/// external loads contribute. `rest` gives coordinates that are not in the motion. Of a model with closed loops less
+/// what the loops' forces contribute: these are such that the generalised forces left of the free coordinates have the
+/// least sum of squares, which no motion of the loops changes.
 [[nodiscard]] MotionAnalysis analyse_motion(const MusculoskeletalSystem& system, const Motion& motion,
                                             const Eigen::VectorXd& rest, const std::vector<double>& time);
 
 /// The same, and the muscles that produce these moments: static optimisation of every frame over the free coordinates
-/// (moments of coupled coordinates count at the ones they follow; locked ones need none). Limit forces of the model are
-/// subtracted first.
+/// (moments of coupled coordinates count at the ones they follow; locked ones need none), along the motions that closed
+/// loops allow. Limit forces of the model are subtracted first.
 [[nodiscard]] MotionAnalysis optimise_motion(const MusculoskeletalSystem& system, const Motion& motion,
                                              const Eigen::VectorXd& rest, const std::vector<double>& time,
                                              const StaticOptimizationOptions& options, Progress& progress);

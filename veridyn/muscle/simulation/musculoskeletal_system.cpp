@@ -132,8 +132,8 @@ MusculoskeletalSystem::MusculoskeletalSystem(const MusculoskeletalSystem& other,
 void MusculoskeletalSystem::refuse_loops(std::string_view method) const {
   if (loops_.empty()) return;
   throw InputError(model_.name,
-                   fmt::format("{} does not know closed loops, and {} closes one; forward simulation and inverse "
-                               "dynamics do",
+                   fmt::format("{} does not know closed loops, and {} closes one; forward simulation, inverse "
+                               "dynamics and static optimization do",
                                method, loops_.constraints().front().text));
 }
 

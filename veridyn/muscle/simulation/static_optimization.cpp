@@ -119,6 +119,9 @@ struct StaticOptimizer::Work {
   std::vector<Jet> activation, length, speed;
   std::vector<RigidTendonParts<Jet>> parts;
   Eigen::VectorXd offset, gain;
+  Eigen::MatrixXd arms;        // along the directions
+  Eigen::VectorXd required;    // the same
+  Eigen::VectorXd multiplier;  // of the last frame, by coordinate
 };
 
 void StaticOptimizationOptions::validate() const {
@@ -160,13 +163,16 @@ StaticOptimizer::~StaticOptimizer() = default;
 StaticOptimizer::StaticOptimizer(StaticOptimizer&&) noexcept = default;
 StaticOptimizer& StaticOptimizer::operator=(StaticOptimizer&&) noexcept = default;
 
-void StaticOptimizer::restart() { work_->program.lambda.setZero(); }
+void StaticOptimizer::restart() {
+  work_->program.lambda.setZero();
+  work_->multiplier.setZero();
+}
 
 /// Bounds of all controls, and what the reserves do: muscles first, then reserves.
-void StaticOptimizer::bound_controls(Eigen::Index n, Eigen::Index m) {
-  const Eigen::Index reserves = options_.reserve.empty() ? 0 : m;
+void StaticOptimizer::bound_controls(Eigen::Index n, const Eigen::MatrixXd* directions, Eigen::Index balances) {
+  const auto reserves = static_cast<Eigen::Index>(options_.reserve.size());
   internal::SeparableProgram& q = work_->program;
-  q.resize(n + reserves, m);
+  q.resize(n + reserves, balances);
   q.p = options_.exponent;
   q.iterations = 0;
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -175,8 +181,12 @@ void StaticOptimizer::bound_controls(Eigen::Index n, Eigen::Index m) {
   }
   for (Eigen::Index j = 0; j < reserves; ++j) {
     const double optimal = options_.reserve[j];
-    q.B.col(n + j).setZero();
-    q.B(j, n + j) = optimal;
+    if (directions != nullptr) {
+      q.B.col(n + j) = directions->row(j).transpose() * optimal;
+    } else {
+      q.B.col(n + j).setZero();
+      q.B(j, n + j) = optimal;
+    }
     q.low(n + j) = optimal > 0.0 ? -options_.reserve_bound : 0.0;
     q.high(n + j) = optimal > 0.0 ? options_.reserve_bound : 0.0;
   }
@@ -229,8 +239,8 @@ StaticOptimizer::Balance StaticOptimizer::balance_with_passive(const Eigen::Matr
 }
 
 void StaticOptimizer::fill(const Eigen::MatrixXd& arms, const Eigen::VectorXd& required,
-                           StaticOptimizationFrame& frame) const {
-  const Work& w = *work_;
+                           const Eigen::MatrixXd* directions, StaticOptimizationFrame& frame) {
+  Work& w = *work_;
   const internal::SeparableProgram& q = w.program;
   const Eigen::Index n = arms.rows(), m = arms.cols();
   frame.activation = q.x.head(n);
@@ -246,20 +256,33 @@ void StaticOptimizer::fill(const Eigen::MatrixXd& arms, const Eigen::VectorXd& r
     frame.unbalanced(j) -= options_.reserve[j] * q.x(n + j);
   }
   frame.multiplier = q.lambda;
+  if (directions != nullptr) {
+    frame.unbalanced = *directions * (directions->transpose() * frame.unbalanced).eval();
+    frame.multiplier = *directions * q.lambda;
+  }
+  w.multiplier = frame.multiplier;
   frame.cost = q.x.cwiseAbs().array().pow(q.p).sum();
   frame.iterations = q.iterations;
 }
 
 void StaticOptimizer::solve(const Eigen::MatrixXd& arms, const Eigen::VectorXd& path_length,
                             const Eigen::VectorXd& path_speed, const Eigen::VectorXd& required,
-                            StaticOptimizationFrame& frame) {
+                            StaticOptimizationFrame& frame, const Eigen::MatrixXd* directions) {
   Work& w = *work_;
   const Eigen::Index n = arms.rows(), m = arms.cols();
   const auto count = static_cast<std::size_t>(n);
   VERIDYN_ASSERT(count == w.muscles.size() && path_length.size() == n && path_speed.size() == n &&
                  required.size() == m);
   VERIDYN_ASSERT(options_.reserve.empty() || static_cast<Eigen::Index>(options_.reserve.size()) == m);
-  bound_controls(n, m);
+  VERIDYN_ASSERT(directions == nullptr || directions->rows() == m);
+  bound_controls(n, directions, directions != nullptr ? directions->cols() : m);
+  if (directions != nullptr) {
+    w.arms.noalias() = arms * *directions;
+    w.required.noalias() = directions->transpose() * required;
+    if (w.multiplier.size() == m) w.program.lambda.noalias() = directions->transpose() * w.multiplier;
+  }
+  const Eigen::MatrixXd& balanced_arms = directions != nullptr ? w.arms : arms;
+  const Eigen::VectorXd& balanced_required = directions != nullptr ? w.required : required;
   const std::span<const double> length(path_length.data(), count), speed(path_speed.data(), count);
   const double tolerance = options_.tolerance * (1.0 + required.cwiseAbs().maxCoeff());
   w.offset.setZero();
@@ -267,18 +290,18 @@ void StaticOptimizer::solve(const Eigen::MatrixXd& arms, const Eigen::VectorXd& 
   switch (options_.force) {
     case StaticForce::kIsometric:
       for (std::size_t i = 0; i < count; ++i) w.gain(i) = w.muscles.max_isometric_force(i);
-      result.balanced = balance(arms, required, tolerance);
+      result.balanced = balance(balanced_arms, balanced_required, tolerance);
       break;
     case StaticForce::kAsOpenSim:
       w.muscles.rigid_forces(1.0, length, speed, w.forces);
       for (std::size_t i = 0; i < count; ++i) w.gain(i) = w.forces[i].active;
-      result.balanced = balance(arms, required, tolerance);
+      result.balanced = balance(balanced_arms, balanced_required, tolerance);
       break;
     case StaticForce::kWithPassive:
-      result = balance_with_passive(arms, length, speed, required, tolerance, frame.activation);
+      result = balance_with_passive(balanced_arms, length, speed, balanced_required, tolerance, frame.activation);
       break;
   }
-  fill(arms, required, frame);
+  fill(arms, required, directions, frame);
   const bool finite = frame.activation.allFinite() && frame.unbalanced.allFinite();
   if (!finite || !result.settled) {
     frame.end = StaticEnd::kIterations;
@@ -287,7 +310,7 @@ void StaticOptimizer::solve(const Eigen::MatrixXd& arms, const Eigen::VectorXd& 
     frame.end = result.balanced && small ? StaticEnd::kBalanced : StaticEnd::kInfeasible;
   }
   // Diverged multipliers are no start for the next frame.
-  if (frame.end != StaticEnd::kBalanced) w.program.lambda.setZero();
+  if (frame.end != StaticEnd::kBalanced) restart();
 }
 
 }  // namespace veridyn::muscle

@@ -44,7 +44,7 @@ struct StaticOptimizationFrame {
   Eigen::VectorXd activation;  ///< of each muscle
   Eigen::VectorXd force;       ///< of each muscle, as the formulation counts it [N]
   Eigen::VectorXd reserve;     ///< control of each coordinate's reserve; 0 without one
-  Eigen::VectorXd unbalanced;  ///< required less achieved generalised force
+  Eigen::VectorXd unbalanced;  ///< required less achieved generalised force, less what loops carry
   Eigen::VectorXd multiplier;  ///< of each coordinate's balance: what one unit more would cost
   double cost = 0.0;
   int iterations = 0;
@@ -71,9 +71,12 @@ class StaticOptimizer {
   [[nodiscard]] const StaticOptimizationOptions& options() const { return options_; }
 
   /// `moment_arms`: muscles x coordinates, -d lMT/d q [m]; path lengths [m] and speeds [m/s] of the muscles; `required`
-  /// generalised forces [N m]. Writes into `frame`, whose memory is reused.
+  /// generalised forces [N m]. With `directions` (orthonormal columns over the coordinates: the motions that closed
+  /// loops allow) forces balance along these alone; what is across them the loops carry. Writes into `frame`, whose
+  /// memory is reused.
   void solve(const Eigen::MatrixXd& moment_arms, const Eigen::VectorXd& path_length, const Eigen::VectorXd& path_speed,
-             const Eigen::VectorXd& required, StaticOptimizationFrame& frame);
+             const Eigen::VectorXd& required, StaticOptimizationFrame& frame,
+             const Eigen::MatrixXd* directions = nullptr);
 
   /// Forgets the last frame.
   void restart();
@@ -84,12 +87,13 @@ class StaticOptimizer {
     bool balanced = false;
     bool settled = false;  ///< activations have settled
   };
-  void bound_controls(Eigen::Index muscles, Eigen::Index coordinates);
+  void bound_controls(Eigen::Index muscles, const Eigen::MatrixXd* directions, Eigen::Index balances);
   [[nodiscard]] bool balance(const Eigen::MatrixXd& arms, const Eigen::VectorXd& required, double tolerance);
   [[nodiscard]] Balance balance_with_passive(const Eigen::MatrixXd& arms, std::span<const double> length,
                                              std::span<const double> speed, const Eigen::VectorXd& required,
                                              double tolerance, const Eigen::VectorXd& start);
-  void fill(const Eigen::MatrixXd& arms, const Eigen::VectorXd& required, StaticOptimizationFrame& frame) const;
+  void fill(const Eigen::MatrixXd& arms, const Eigen::VectorXd& required, const Eigen::MatrixXd* directions,
+            StaticOptimizationFrame& frame);
 
   StaticOptimizationOptions options_;
   std::unique_ptr<Work> work_;
