@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -12,6 +13,7 @@
 #include "veridyn/muscle/osim/osim_reader.hpp"
 #include "veridyn/muscle/path/path_workspace.hpp"
 #include "veridyn/muscle/simulation/assembly.hpp"
+#include "veridyn/muscle/simulation/forward_simulation.hpp"
 #include "veridyn/muscle/simulation/system_evaluator.hpp"
 
 namespace veridyn::muscle {
@@ -109,6 +111,29 @@ TEST(MotionAnalysis, OfAClosedLoopGivesTheForcesThatReproduceItsMotion) {
       EXPECT_NEAR(across, 0.0, 1e-10 * moment.norm());
     }
   }
+}
+
+// One muscle on the one motion that the loop leaves: its force is determined, whatever the muscle is like.
+TEST(MotionAnalysis, FindsTheForceOfTheOnlyMuscleOfAClosedLoopThatWasSimulatedForward) {
+  Model model = read_osim(veridyn::test::source_folder() / "examples/studies/muscle/pedals.osim");
+  model.muscles.resize(1);
+  model.muscles[0].parameters.max_control = 10.0;  // its force, passive for a good part, is above F0
+  const MusculoskeletalSystem system(model);
+  Progress progress;
+  const MuscleTrajectory forward = simulate_forward(system, default_start(model), {.excitation = ControlSignals({0.3})},
+                                                    {.end = 0.2, .rate_Hz = 500.0, .accuracy = 1e-11}, progress);
+  ASSERT_TRUE(forward.usable()) << forward.message();
+  SignalTable table;
+  table.names = {"hip_flexion", "knee_extension", "crank_angle"};
+  table.time = forward.time;
+  for (Eigen::Index c = 0; c < 3; ++c) table.values.emplace_back(forward.q.col(c).begin(), forward.q.col(c).end());
+  const MotionAnalysis a = optimise_motion(system, make_motion(table, model), model.default_pose(), forward.time,
+                                           {.force = StaticForce::kIsometric}, progress);
+  EXPECT_TRUE(a.infeasible.empty());
+  double worst = 0.0;
+  for (Eigen::Index i = 10; i + 10 < a.q.rows(); ++i)
+    worst = std::max(worst, std::abs(a.force(i, 0) / forward.tendon_force(i, 0) - 1.0));
+  EXPECT_LT(worst, 1e-6);
 }
 
 TEST(MotionAnalysis, NamesTheLoopThatAMotionDoesNotClose) {
