@@ -120,8 +120,9 @@ TEST(MotionAnalysis, FindsTheForceOfTheOnlyMuscleOfAClosedLoopThatWasSimulatedFo
   model.muscles[0].parameters.max_control = 10.0;  // its force, passive for a good part, is above F0
   const MusculoskeletalSystem system(model);
   Progress progress;
-  const MuscleTrajectory forward = simulate_forward(system, default_start(model), {.excitation = ControlSignals({0.3})},
-                                                    {.end = 0.2, .rate_Hz = 500.0, .accuracy = 1e-11}, progress);
+  const MuscleTrajectory forward =
+      simulate_forward(system, default_start(model), {.excitation = ControlSignals({0.3}), .reserve = {}},
+                       {.end = 0.2, .rate_Hz = 500.0, .accuracy = 1e-11}, progress);
   ASSERT_TRUE(forward.usable()) << forward.message();
   SignalTable table;
   table.names = {"hip_flexion", "knee_extension", "crank_angle"};

@@ -167,8 +167,8 @@ inline void PathSolver<Scalar>::segments_between(const MusclePaths::LinkPair& pa
     internal::compute(lanes);
   } else {
     for (std::size_t i = pair.first; i < pair.end; ++i) {
-      const Vector x(Scalar(a[0][i]), Scalar(a[1][i]), Scalar(a[2][i]));
-      const Vector u = r * Vector(Scalar(b[0][i]), Scalar(b[1][i]), Scalar(b[2][i])) + (t - x);
+      const Vector x{Scalar(a[0][i]), Scalar(a[1][i]), Scalar(a[2][i])};
+      const Vector u = r * Vector{Scalar(b[0][i]), Scalar(b[1][i]), Scalar(b[2][i])} + (t - x);
       const Scalar length = sqrt(u.squaredNorm());
       w_.segment_length[i] = length;
       if constexpr (kGradient) {
