@@ -1,11 +1,11 @@
 #include "veridyn/muscle/simulation/motion_analysis.hpp"
 
-#include <Eigen/QR>
 #include <cmath>
 
 #include "veridyn/core/index.hpp"
 #include "veridyn/muscle/dynamics/coordinate_forces.hpp"
 #include "veridyn/muscle/simulation/system_evaluator.hpp"
+#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 
 namespace veridyn::muscle {
 namespace {
@@ -66,10 +66,9 @@ class LoopShare {
       if (!open.constraint.empty() && error <= open.error) continue;
       open = {loops_->loops().of_row(r).text, error, time};
     }
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(jacobian_.transpose());
-    qr.setThreshold(LoopSolver<double>::kRounding);
-    const Eigen::MatrixXd basis = qr.householderQ();
-    directions_ = basis.rightCols(n_ - qr.rank());
+    const numerics::Eliminated basis =
+        numerics::eliminate(jacobian_.transpose(), Eigen::MatrixXd::Identity(n_, n_), LoopSolver<double>::kRounding);
+    directions_ = basis.rest.bottomRows(n_ - basis.rank).transpose();
   }
 
   /// Orthonormal: the motions of the free coordinates that the loops allow.
