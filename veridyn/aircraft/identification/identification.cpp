@@ -201,10 +201,10 @@ FittedCoefficient fit_terms(const CoefficientModel& given, const FlightView& fli
 }
 
 /// Checks and verdict of a fitted coefficient, or of what output error made of it.
-CoefficientResult judged(FittedCoefficient fitted, const FlightView& flight, const ChosenOutputError* flown) {
+CoefficientResult judged(CoefficientResult result, CoefficientFit fit, const FlightView& flight,
+                         const ChosenOutputError* flown) {
   const IdentifyOptions& options = flight.options;
-  auto& [result, fit] = fitted;
-  if (!result.reason.empty()) return std::move(result);
+  if (!result.reason.empty()) return result;
   std::optional<internal::FlightFits> each;
   if (fit.chosen && flight.flights.size() > 1) each = internal::fit_each_flight(fit, flight);
   if (flown != nullptr) internal::take_output_error(fit, *flown, each ? &each->scatter : nullptr, flight);
@@ -312,7 +312,8 @@ Identification identify_coefficients(std::span<const PreparedFlight> flights, co
   Identification found;
   found.coefficients.resize(models.size());
   const auto judge = [&](std::size_t i) {
-    found.coefficients[i] = judged(std::move(fitted[i]), flight, flown ? &*flown : nullptr);
+    found.coefficients[i] =
+        judged(std::move(fitted[i].result), std::move(fitted[i].fit), flight, flown ? &*flown : nullptr);
   };
   const auto judging = [&](std::size_t done) { return progress.update(0.5 + static_cast<double>(done) / steps); };
   if (!numerics::parallel_for(models.size(), progress.threads(), judge, judging)) return {};
