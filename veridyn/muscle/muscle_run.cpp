@@ -62,21 +62,21 @@ MuscleResult forward(const MuscleStudy& study, Progress& progress) {
 }
 
 /// What is to be said of the loads of a model whose loops carry part of them.
-void note_loops(const MotionAnalysis::OpenLoop& open, MuscleResult& result) {
-  if (open.constraint.empty()) return;
+void note_loops(const MotionAnalysis::LoopGap& gap, MuscleResult& result) {
+  if (gap.constraint.empty()) return;
   result.warnings.emplace_back(
       "closed loops carry part of the loads: the generalised forces are the smallest ones that give the motion");
   constexpr double kOpen = 1e-3;
-  if (open.error > kOpen)
+  if (gap.error > kOpen)
     result.warnings.push_back(fmt::format("the motion does not close the model's loops: {} is open by {:.3g} at {:g} s",
-                                          open.constraint, open.error, open.time));
+                                          gap.constraint, gap.error, gap.time));
 }
 
 /// The rows of a prescribed motion as a result.
 MuscleResult result_of(const MuscleStudy& study, MotionAnalysis&& analysis) {
   MuscleResult result;
   check_loads(study, analysis, result);
-  note_loops(analysis.open_loop, result);
+  note_loops(analysis.loop_gap, result);
   MuscleTrajectory& t = result.trajectory;
   t.time = std::move(analysis.time);
   t.q = std::move(analysis.q);

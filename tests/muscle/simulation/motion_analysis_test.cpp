@@ -88,8 +88,8 @@ TEST(MotionAnalysis, OfAClosedLoopGivesTheForcesThatReproduceItsMotion) {
   const MotionAnalysis a = optimise_motion(system, motion, system.model().default_pose(), frame_times(0.0, 0.5, 100.0),
                                            {.force = StaticForce::kWithPassive, .reserve = {0.0, 0.0, 5.0}}, progress);
   EXPECT_TRUE(a.infeasible.empty());
-  EXPECT_EQ(a.open_loop.constraint, "PointConstraint 'foot_on_pedal'");
-  EXPECT_LT(a.open_loop.error, 1e-9);
+  EXPECT_EQ(a.loop_gap.constraint, "PointConstraint 'foot_on_pedal'");
+  EXPECT_LT(a.loop_gap.error, 1e-9);
   EXPECT_GT(a.force.maxCoeff(), 50.0);
   SystemEvaluator<double> evaluator(system);
   const auto pairs = system.pairs();
@@ -143,8 +143,8 @@ TEST(MotionAnalysis, NamesTheLoopThatAMotionDoesNotClose) {
   const double knee = motion.coordinate[1]->evaluate(0.0).value;
   motion.coordinate[1] = numerics::PiecewisePolynomial::constant(knee + 0.05);
   const MotionAnalysis a = analyse_motion(system, motion, system.model().default_pose(), frame_times(0.0, 0.5, 20.0));
-  EXPECT_EQ(a.open_loop.constraint, "PointConstraint 'foot_on_pedal'");
-  EXPECT_GT(a.open_loop.error, 0.01);
+  EXPECT_EQ(a.loop_gap.constraint, "PointConstraint 'foot_on_pedal'");
+  EXPECT_GT(a.loop_gap.error, 0.01);
 }
 
 }  // namespace

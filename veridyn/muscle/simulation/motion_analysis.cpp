@@ -57,14 +57,14 @@ class LoopShare {
 
   /// Looks at the loops of a pose. The evaluator is left at it, with the speeds of free coordinates only.
   void set_pose(const Eigen::VectorXd& q, const Eigen::VectorXd& qdot, double time, SystemEvaluator<double>& evaluator,
-                MotionAnalysis::OpenLoop& open) {
+                MotionAnalysis::LoopGap& gap) {
     evaluator.set_pose(q.data(), qdot.data());
     loops_ = &evaluator.dynamics().update_loops();
     for (int r = 0; r < loops_->rows(); ++r) {
       jacobian_.row(r) = Eigen::Map<const Eigen::RowVectorXd>(loops_->jacobian(r), n_);
       const double error = std::abs(loops_->row(r).error);
-      if (!open.constraint.empty() && error <= open.error) continue;
-      open = {loops_->loops().of_row(r).text, error, time};
+      if (!gap.constraint.empty() && error <= gap.error) continue;
+      gap = {loops_->loops().of_row(r).text, error, time};
     }
     const numerics::Eliminated basis =
         numerics::eliminate(jacobian_.transpose(), Eigen::MatrixXd::Identity(n_, n_), LoopSolver<double>::kRounding);
@@ -99,7 +99,7 @@ class LoopShare {
 /// Sets the evaluator to an instant and writes what inverse dynamics finds there into a row.
 void analyse(const Instant& now, Eigen::Index row, const ExternalLoads* external, SystemEvaluator<double>& evaluator,
              LoopShare& loops, const Eigen::VectorXd& slope, MotionAnalysis& a) {
-  if (loops.any()) loops.set_pose(now.q, now.qdot, a.time[row], evaluator, a.open_loop);
+  if (loops.any()) loops.set_pose(now.q, now.qdot, a.time[row], evaluator, a.loop_gap);
   evaluator.set_all(now.q.data(), now.qdot.data());
   a.q.row(row) = now.q;
   a.qdot.row(row) = now.qdot;

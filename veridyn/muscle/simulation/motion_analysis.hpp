@@ -23,12 +23,12 @@ struct MotionAnalysis {
   estimation::RowMatrix force;          ///< of each muscle, as the formulation counts it [N]
   estimation::RowMatrix reserve;        ///< generalised force of the reserves [N m or N]
   std::vector<std::size_t> infeasible;  ///< frames whose moments could not be produced
-  // Of a model with closed loops.
-  struct OpenLoop {
+  /// How far the motion leaves a closed loop open, where it does so most.
+  struct LoopGap {
     std::string constraint;  ///< empty: the model has no loops
     double error = 0.0;      ///< largest error of an equation of a loop [m or 1]
     double time = 0.0;       ///< [s]
-  } open_loop;
+  } loop_gap;
   bool interrupted = false;
 };
 
