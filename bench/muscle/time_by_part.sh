@@ -2,7 +2,7 @@
 # Where the processor time of a benchmark goes, by part of the simulation (needs perf):
 #   cmake --preset bench && cmake --build --preset bench --target veridyn_muscle_bench
 #   bench/muscle/time_by_part.sh build/bench/bin/veridyn_muscle_bench 'forward/thelen_s1_exact'
-# Functions are told by name; those of the C library that several parts call have rows of their own.
+# Functions are assigned to parts by their names; functions of the C library that several parts call have rows of their own.
 set -e
 data=$(mktemp)
 trap 'rm -f "$data"' EXIT

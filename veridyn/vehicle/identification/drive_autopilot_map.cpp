@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "veridyn/core/constants.hpp"
+#include "veridyn/recording/ros_topics.hpp"
 #include "veridyn/vehicle/identification/drive_maps.hpp"
 
 namespace veridyn::vehicle::internal {
@@ -70,23 +70,13 @@ class AutopilotDriveMap {
  private:
   void put(const char* channel, const char* unit, const TimeBase& time, std::vector<double> values,
            const std::string& source, const std::string& note) {
-    if (mapped_.recording.has(channel)) return;
-    Channel made = make_channel(channel, unit, time, std::move(values));
-    mapped_.origins.push_back({made.name, source, made.rate_Hz(), note});
-    mapped_.recording.add(std::move(made));
+    put_mapped(mapped_, channel, unit, time, std::move(values), source, note);
   }
 
   /// Where it holds numbers that change.
   [[nodiscard]] const Channel* alive(const char* name) const {
     const Channel* const channel = log_.find(name);
-    if (channel == nullptr) return nullptr;
-    double first = kNaN;
-    for (const double v : channel->value) {
-      if (!std::isfinite(v)) continue;
-      if (std::isnan(first)) first = v;
-      if (v != first) return channel;
-    }
-    return nullptr;
+    return channel != nullptr && recording::changes(channel->value) ? channel : nullptr;
   }
 
   /// The filter's velocity along the heading: it has the sign of reversing, which a speed over ground has not.

@@ -9,6 +9,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/numerics/rotation.hpp"
 #include "veridyn/recording/study_data.hpp"
 #include "veridyn/vehicle/identification/drive_maps.hpp"
 
@@ -130,7 +131,7 @@ recording::MappedRecording with_angles_about_zero(recording::MappedRecording map
     if (count == 0) continue;
     Channel channel = *recorded;
     for (double& angle : channel.value)
-      if (beyond(angle)) angle = std::remainder(angle, 2.0 * kPi);
+      if (beyond(angle)) angle = numerics::wrap_angle(angle);
     mapped.notes.push_back(
         fmt::format("{}: {} readings of more than half a turn are taken as less than one the other way", name, count));
     mapped.recording.set(std::move(channel));

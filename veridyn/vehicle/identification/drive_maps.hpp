@@ -1,5 +1,9 @@
 #pragma once
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "veridyn/core/recording.hpp"
 #include "veridyn/recording/channel_map.hpp"
 
@@ -15,5 +19,14 @@ namespace veridyn::vehicle::internal {
 /// them.
 [[nodiscard]] recording::MappedRecording with_autopilot_channels(recording::MappedRecording mapped,
                                                                  const Recording& log);
+
+/// Adds a channel and where it is from, where there is none of its name yet.
+inline void put_mapped(recording::MappedRecording& mapped, const char* channel, const char* unit, const TimeBase& time,
+                       std::vector<double> values, const std::string& source, const std::string& note) {
+  if (mapped.recording.has(channel)) return;
+  Channel made = make_channel(channel, unit, time, std::move(values));
+  mapped.origins.push_back({made.name, source, made.rate_Hz(), note});
+  mapped.recording.add(std::move(made));
+}
 
 }  // namespace veridyn::vehicle::internal

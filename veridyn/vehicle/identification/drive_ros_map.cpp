@@ -47,10 +47,7 @@ class RosDriveMap {
   void put(const char* channel, const char* unit, const TimeBase& time, std::vector<double> values,
            const std::string& source, const std::string& note) {
     // What stands still is not measured: the roll of a planar odometry.
-    if (mapped_.recording.has(channel) || !recording::changes(values)) return;
-    Channel made = make_channel(channel, unit, time, std::move(values));
-    mapped_.origins.push_back({made.name, source, made.rate_Hz(), note});
-    mapped_.recording.add(std::move(made));
+    if (recording::changes(values)) put_mapped(mapped_, channel, unit, time, std::move(values), source, note);
   }
 
   void put_axes(const std::optional<RosVector>& from, const char* unit, std::array<const char*, 3> channels) {
