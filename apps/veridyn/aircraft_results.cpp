@@ -68,6 +68,7 @@ std::string filter_errors_csv(const Reconstruction& r) {
 /// The tables of a reconstruction that there are; `number` of one of several flights: "_2".
 void write_filter_tables(OutputFolder& folder, const Reconstruction& r, const std::string& number = {}) {
   if (!r.sensor_errors.empty()) folder.write("sensor_errors" + number + ".csv", sensor_errors_csv(r));
+  if (!r.innovations.channels().empty()) folder.write("innovations" + number + ".csv", io::to_csv(r.innovations));
   if (!r.comparison.empty()) folder.write("filter_errors" + number + ".csv", filter_errors_csv(r));
 }
 

@@ -117,6 +117,7 @@ PreparedFlight prepared(const FlightStudy& study, Progress& progress) {
     flight.signals = prepare_signals(flight.aligned, flight.reconstruction.smoothed, study.subject, study.signals,
                                      data_sheet ? &flight.reconstruction.sigma : nullptr, progress.threads());
     flight.segments = excited_segments(flight.signals, study.segments);
+    leave_out_slow_flight(flight.signals, flight.segments, study.segments.min_airspeed_mps);
     if (study.held_out) flight.segments = all_held_out(std::move(flight.segments));
   } else {
     flight.segments = recorded_flight(flight.aligned.recording, study.segments.min_airspeed_mps);

@@ -1,6 +1,9 @@
 #include "veridyn/aircraft/identification/excited_segments.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include "tests/aircraft/pitching_flight.hpp"
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
@@ -53,6 +56,25 @@ TEST(ExcitedSegments, LieInTheAir) {
   EXPECT_NEAR(segments.airborne[0].begin, 90.0, 0.1);
   ASSERT_FALSE(segments.longitudinal.excited.empty());
   EXPECT_GE(segments.longitudinal.excited.front().begin, 89.9);
+}
+
+TEST(ExcitedSegments, FormNoRowsWhereTheAirspeedFailsForAMoment) {
+  FlightSignals s = manoeuvring(FlightSignal::kElevator, FlightSignal::kQ);
+  const auto failing = [&s](std::size_t k) { return s.grid.at(k) > 80.0 && s.grid.at(k) < 81.5; };
+  for (std::size_t k = 0; k < s.size(); ++k)
+    if (failing(k)) s[FlightSignal::kAirspeed].value[k] = 1e-3;
+  const Segments segments = excited_segments(s, above_ten());
+  ASSERT_EQ(segments.airborne.size(), 1U) << "a dip of less than two seconds is no landing";
+  const std::size_t notes = s.notes.size();
+  leave_out_slow_flight(s, segments, 10.0);
+  for (std::size_t k = 0; k < s.size(); ++k)
+    ASSERT_EQ(std::isfinite(s[FlightSignal::kAirspeed].value[k]), !failing(k)) << s.grid.at(k);
+  ASSERT_EQ(s.notes.size(), notes + 1);
+  EXPECT_THAT(s.notes.back(), ::testing::HasSubstr("below 10.0 m/s (segments.min_airspeed) for 1.5 s"));
+
+  FlightSignals sound = manoeuvring(FlightSignal::kElevator, FlightSignal::kQ);
+  leave_out_slow_flight(sound, segments, 10.0);
+  EXPECT_EQ(sound.notes.size(), notes);
 }
 
 }  // namespace

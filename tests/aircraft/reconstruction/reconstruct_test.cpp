@@ -196,6 +196,52 @@ TEST(Reconstruct, DropsSpikes) {
             1.1 * errors_of(clean.smoothed, "airspeed", f.airspeed).rms);
 }
 
+TEST(Reconstruct, KeepsInnovationsInTheSensorsUnits) {
+  const MadeFlight f = make_flight({.duration = 30.0});
+  ReconstructOptions keep = known_sensors();
+  keep.keep_innovations = true;
+  const Reconstruction r = run(f.recording, keep);
+  EXPECT_EQ(r.smoothed.at("alpha").value, run(f.recording, known_sensors()).smoothed.at("alpha").value);
+  for (const SensorReport& s : r.sensors) {
+    const auto& nu = r.innovations.at(s.channel).value;
+    const auto& sigma = r.innovations.at("sigma_" + s.channel).value;
+    const auto& refused = r.innovations.at("refused_" + s.channel).value;
+    ASSERT_EQ(nu.size(), s.innovations.count) << s.channel;
+    double sum = 0.0, squares = 0.0, expected = 0.0, used = 0.0;
+    for (std::size_t i = 0; i < nu.size(); ++i) {
+      if (refused[i] != 0.0) continue;
+      ++used;
+      sum += nu[i];
+      squares += nu[i] * nu[i];
+      expected += sigma[i] * sigma[i];
+    }
+    EXPECT_NEAR(s.innovations.mean_size, sum / used, 1e-12 * s.sigma);
+    EXPECT_NEAR(s.innovations.rms_size, std::sqrt(squares / used), 1e-9 * s.sigma) << s.channel;
+    EXPECT_NEAR(s.innovations.expected_size, std::sqrt(expected / used), 1e-9 * s.sigma) << s.channel;
+    EXPECT_NEAR(s.innovations.rms_size / s.innovations.expected_size, 1.0, 0.1) << s.channel;
+    EXPECT_GT(s.innovations.expected_size, s.sigma) << "the sensor's noise and what the filter did not know";
+  }
+
+  // A sample that is off by 10 deg, and one that is off by 0.3 deg, are seen off by just that.
+  Recording off = f.recording;
+  Channel vane = off.at("alpha");
+  const std::size_t spike = vane.size() / 3, small = vane.size() / 2;
+  vane.value[spike] += 10.0 * kDegree;
+  vane.value[small] += 0.3 * kDegree;
+  const double at_spike = vane.times()[spike];
+  off.set(vane);
+  const Reconstruction shifted = run(off, keep);
+  const Channel& before = r.innovations.at("alpha");
+  const Channel& after = shifted.innovations.at("alpha");
+  const auto k = static_cast<std::size_t>(std::ranges::find(before.times(), at_spike) - before.times().begin());
+  ASSERT_LT(k, before.size());
+  EXPECT_NEAR(after.value[k] - before.value[k], 10.0 * kDegree, 1e-9);
+  EXPECT_EQ(shifted.innovations.at("refused_alpha").value[k], 1.0);
+  EXPECT_EQ(r.innovations.at("refused_alpha").value[k], 0.0);
+  // The filter lost a sample at the spike, which is forgotten soon.
+  EXPECT_NEAR(after.value[k + small - spike] - before.value[k + small - spike], 0.3 * kDegree, 0.01 * kDegree);
+}
+
 TEST(Reconstruct, EstimatesBiasesOfInertialSensors) {
   const MadeFlight f = make_flight({.duration = 120.0});
   Recording biased = f.recording;

@@ -54,7 +54,13 @@ TEST(SensorsSection, ShowsAnglesInDegrees) {
                   .unit = "rad",
                   .sigma = 0.5 * kDegree,
                   .rate_Hz = 50.0,
-                  .innovations = {.count = 1000, .rejected = 7, .nis = 1.5, .lag1 = 0.1}}};
+                  .innovations = {.count = 1000,
+                                  .rejected = 7,
+                                  .nis = 1.5,
+                                  .mean_size = -0.01 * kDegree,
+                                  .rms_size = 0.6 * kDegree,
+                                  .expected_size = 0.49 * kDegree,
+                                  .lag1 = 0.1}}};
   rec.quantities = {{.quantity = "beta",
                      .unit = "rad",
                      .prior_sigma = 4.0 * kDegree,
@@ -64,7 +70,8 @@ TEST(SensorsSection, ShowsAnglesInDegrees) {
   const Section section = sensors_section(flight);
   check({.sections = {section}});
   const Table innovations = test::table_of(section.blocks, "Innovations");
-  EXPECT_THAT(test::shown_row(innovations, 0), ElementsAre("alpha", "0.500", "deg", "1000", "7", "1.50", "0.10"));
+  EXPECT_THAT(test::shown_row(innovations, 0),
+              ElementsAre("alpha", "0.500", "−0.010", "0.600", "0.490", "deg", "1000", "7", "1.50", "0.10"));
   const Table quantities = test::table_of(section.blocks, "What the sensors determine");
   EXPECT_THAT(test::shown_row(quantities, 0),
               ElementsAre("beta", "1.00", "4.00", "deg", "weakly observable", "beta is weak"));

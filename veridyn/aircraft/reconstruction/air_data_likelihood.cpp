@@ -78,10 +78,10 @@ class AirDataLikelihood {
     while (runs[0]->advance()) {
       for (std::size_t k = 1; k < runs.size(); ++k) static_cast<void>(runs[k]->advance());
       for (std::size_t m = 0; m < runs[0]->innovations().size(); ++m) {
-        const estimation::Innovation& at = runs[0]->innovations()[m];
+        const SensorInnovation& at = runs[0]->innovations()[m];
         bool usable = at.accepted;
         for (std::size_t k = 1; k < runs.size() && usable; ++k) {
-          const estimation::Innovation& moved = runs[k]->innovations()[m];
+          const SensorInnovation& moved = runs[k]->innovations()[m];
           usable = moved.accepted;
           nu(static_cast<Eigen::Index>(k) - 1) = (moved.nu - at.nu) / kStep;
           S(static_cast<Eigen::Index>(k) - 1) = (moved.S - at.S) / kStep;

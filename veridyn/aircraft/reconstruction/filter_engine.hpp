@@ -38,7 +38,7 @@ class InnovationRun {
   /// To the next event; false at the end of the segment.
   virtual bool advance() = 0;
   /// The samples of the last event.
-  [[nodiscard]] virtual const std::vector<estimation::Innovation>& innovations() const = 0;
+  [[nodiscard]] virtual const std::vector<SensorInnovation>& innovations() const = 0;
   [[nodiscard]] virtual const Monitors& monitors() const = 0;
 };
 
@@ -56,13 +56,16 @@ class FilterEngine {
   using OnFiltered =
       std::function<bool(std::size_t output, double time, const AirDataState<double>& x, const CovarianceView& P)>;
   using OnSmoothed = std::function<void(std::size_t output, const AirDataState<double>& x, const CovarianceView& P)>;
+  /// A sample of the forward pass; empty: none is wanted.
+  using OnInnovation = std::function<void(double time, const SensorInnovation& innovation)>;
 
   virtual ~FilterEngine() = default;
   [[nodiscard]] virtual bool has_forces() const = 0;
   /// Filter and smoother over a segment (see estimation::smooth_in_blocks).
   [[nodiscard]] virtual PassEnd smooth(const RunSetting& setting, const Segment& segment, const Monitors& monitors,
                                        std::size_t first_output, std::span<const std::size_t> error_columns,
-                                       int threads, const OnFiltered& filtered, const OnSmoothed& smoothed) const = 0;
+                                       int threads, const OnFiltered& filtered, const OnSmoothed& smoothed,
+                                       const OnInnovation& seen) const = 0;
   [[nodiscard]] virtual std::unique_ptr<InnovationRun> innovation_run(const RunSetting& setting, const Segment& segment,
                                                                       const Monitors& monitors) const = 0;
   [[nodiscard]] virtual std::unique_ptr<AirDataEstimator> estimator(const ModelBasedMotion& motion,

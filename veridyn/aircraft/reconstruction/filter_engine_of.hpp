@@ -62,7 +62,7 @@ class InnovationRunOf final : public InnovationRun {
  public:
   explicit InnovationRunOf(FlightRun<Model> run) : run_(std::move(run)) { run_.keep_innovations(); }
   bool advance() override { return run_.advance(nullptr); }
-  const std::vector<estimation::Innovation>& innovations() const override { return run_.innovations(); }
+  const std::vector<SensorInnovation>& innovations() const override { return run_.innovations(); }
   const Monitors& monitors() const override { return run_.monitors(); }
 
  private:
@@ -77,9 +77,10 @@ class EngineOf final : public FilterEngine {
 
   PassEnd smooth(const RunSetting& setting, const Segment& segment, const Monitors& monitors, std::size_t first_output,
                  std::span<const std::size_t> error_columns, int threads, const OnFiltered& filtered,
-                 const OnSmoothed& smoothed) const override {
+                 const OnSmoothed& smoothed, const OnInnovation& seen) const override {
     constexpr std::size_t kBlock = 512;
     const auto forward = [&](const FlightRun<Model>& now) {
+      for (const SensorInnovation& innovation : now.innovations()) seen(now.time(), innovation);
       if (lost_sensor(now.monitors())) return false;
       return !now.at_output() ||
              filtered(now.output(), now.time(), now.filter().state(), view_of<Model>(now.filter().covariance()));
@@ -87,7 +88,8 @@ class EngineOf final : public FilterEngine {
     const auto emit = [&](std::size_t number, const AirDataState<double>& x, const typename Model::Covariance& P) {
       smoothed(number, x, view_of<Model>(P));
     };
-    const FlightRun<Model> run(setting, segment, start_of(setting, segment), monitors, first_output);
+    FlightRun<Model> run(setting, segment, start_of(setting, segment), monitors, first_output);
+    if (seen) run.keep_innovations();
     const FlightRun<Model> end = estimation::smooth_in_blocks<Model>(run, kBlock, threads, forward, emit);
     return {end.monitors(), view_of<Model>(end.filter().covariance()).of_columns(error_columns)};
   }

@@ -149,6 +149,22 @@ std::vector<SensorReport> sensor_reports(const FlightStreams& s, const Solution&
   return reports;
 }
 
+Recording innovation_recording(const FlightStreams& s, Solution& solution, const std::string& source) {
+  Recording recording;
+  recording.source = source;
+  for (std::size_t i = 0; i < kSensors; ++i) {
+    internal::InnovationHistory& history = solution.innovations[i];
+    if (history.time.empty()) continue;
+    const std::string& name = s.sensors[i].channel;
+    const std::string& unit = s.sensors[i].unit;
+    const TimeBase time = make_time_base(std::move(history.time));
+    recording.add(make_channel(name, unit, time, std::move(history.innovation)));
+    recording.add(make_channel("sigma_" + name, unit, time, std::move(history.sigma)));
+    recording.add(make_channel("refused_" + name, "1", time, std::move(history.refused)));
+  }
+  return recording;
+}
+
 /// Sensors whose samples contradict the estimate.
 std::vector<std::string> contradiction_warnings(std::span<const SensorReport> sensors) {
   std::vector<std::string> warnings;
@@ -424,6 +440,7 @@ Reconstruction reconstruct(const Recording& mapped, const ReconstructOptions& gi
   warn(streams.warnings);
   warn(sampling_warnings(streams, segments.size(), options.max_gap));
   out.sensors = sensor_reports(streams, solution);
+  out.innovations = innovation_recording(streams, solution, mapped.source);
   for (const SensorReport& sensor : out.sensors) out.log_likelihood += sensor.innovations.log_likelihood;
   warn(contradiction_warnings(out.sensors));
   if (solution.count > 0)

@@ -88,6 +88,9 @@ struct Reconstruction {
   Recording filtered;              ///< empty unless `keep_filter`
   std::vector<TimeSpan> segments;  ///< stretches without a long gap, each estimated separately
   std::vector<SensorReport> sensors;
+  /// Where `keep_innovations`: of each sensor the innovations of the forward pass under the channel's name, with
+  /// `sigma_...`, the standard deviation that the filter expected, and `refused_...`, 1 where it was beyond the gate.
+  Recording innovations;
   std::vector<QuantityReport> quantities;
   std::vector<SensorErrorReport> sensor_errors;  ///< those that were to be estimated
   std::optional<GuardReport> guard;

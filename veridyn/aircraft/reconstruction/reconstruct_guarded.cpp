@@ -145,6 +145,7 @@ Solution solve_guarded(const SolveTask& task, Progress& progress) {
   return {.smoothed = joined(*std::move(based.smoothed), *free.smoothed, trusted, count, reverted),
           .filtered = std::move(filtered),
           .monitors = errors.monitors,
+          .innovations = std::move(errors.innovations),
           .count = count,
           .error_columns = std::move(errors.error_columns),
           .error_covariance = std::move(errors.error_covariance),

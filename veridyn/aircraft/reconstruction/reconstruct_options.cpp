@@ -153,6 +153,7 @@ ReconstructOptions ReconstructOptions::read(const StudyTable& table) {
   o.gate.threshold = table.positive_or("gate", "1", o.gate.threshold);
   o.gate.recovery_s = table.positive_or("gate_recovery", "s", o.gate.recovery_s);
   o.gate.dead_reckoning_s = table.positive_or("dead_reckoning", "s", o.gate.dead_reckoning_s);
+  o.keep_innovations = table.flag_or("innovations", o.keep_innovations);
   o.sigma = read_sigma(table.table_or_empty("sigma"));
   o.delay = read_delay(table.table_or_empty("delay"));
   return o;

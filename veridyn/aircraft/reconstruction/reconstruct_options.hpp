@@ -88,6 +88,7 @@ struct AssumedTurbulence {
 ///     gate = 5.0               # innovations beyond this many sigma are dropped
 ///     gate_recovery = "2 s"    # a sensor dropped for this long is taken back with inflated variance
 ///     dead_reckoning = "10 s"  # a sensor dropped for this much longer than accepted ends the reconstruction
+///     innovations = false      # keep the innovations of every sensor, for a table and a figure
 ///     [reconstruct.sigma]      # overrides `sensors`, 1 sigma per sample: accelerometer, gyro, attitude, velocity,
 ///     alpha = "0.6 deg"        # velocity_down, dynamic_pressure, airspeed, alpha, beta
 ///     [reconstruct.guard]      # see estimation::GuardOptions
@@ -135,6 +136,7 @@ struct ReconstructOptions {
   struct Delay {
     double velocity = 0.0, attitude = 0.0, pitot = 0.0, alpha = 0.0, beta = 0.0;
   } delay;
+  bool keep_innovations = false;
   bool keep_filter = true;  ///< whether the filter's estimate is kept in addition to the smoother's
 
   /// Reads the table `[reconstruct]`.

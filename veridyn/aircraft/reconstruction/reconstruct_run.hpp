@@ -12,7 +12,7 @@
 /// Inside of reconstruct.cpp: the filter going through one segment, event by event.
 namespace veridyn::aircraft::internal {
 
-/// The innovations of all sensors.
+/// What is known of the innovations of all sensors.
 using Monitors = EnumArray<Sensor, estimation::InnovationMonitor, kSensors>;
 
 /// Of attitude, ground velocity and pitot tube, which alone correct what they measure, the one that no longer corrects
@@ -22,6 +22,12 @@ using Monitors = EnumArray<Sensor, estimation::InnovationMonitor, kSensors>;
     if (monitors[which].lost()) return which;
   return std::nullopt;
 }
+
+/// The innovation of a sensor's sample.
+struct SensorInnovation : estimation::Innovation {
+  Sensor sensor{};
+  bool offered = false;  ///< else it is not to be used where it is (a vane at rest)
+};
 
 /// View of what does not change along a run: streams, options and stamps must outlive it.
 struct RunSetting {
@@ -156,7 +162,7 @@ class FlightRun {
           enter_measurement<Model>(filter_, model_, context, which, z, sigma, monitors_[which], tape, &seen);
       if (keep_innovations_) {
         seen.accepted = seen.accepted && offered;
-        innovations_.push_back(seen);
+        innovations_.push_back({seen, which, offered});
       }
     });
     if (cursor_.at_output()) filter_.mark(cursor_.output(), tape);
@@ -167,7 +173,7 @@ class FlightRun {
   [[nodiscard]] std::size_t output() const { return cursor_.output(); }
   [[nodiscard]] double time() const { return cursor_.time(); }
   /// The samples of the last event, where `keep_innovations` was called.
-  [[nodiscard]] const std::vector<estimation::Innovation>& innovations() const { return innovations_; }
+  [[nodiscard]] const std::vector<SensorInnovation>& innovations() const { return innovations_; }
   void keep_innovations() { keep_innovations_ = true; }
   [[nodiscard]] const Filter& filter() const { return filter_; }
   [[nodiscard]] const Monitors& monitors() const { return monitors_; }
@@ -187,7 +193,7 @@ class FlightRun {
   EventCursor cursor_;
   Filter filter_;
   Monitors monitors_;
-  std::vector<estimation::Innovation> innovations_;
+  std::vector<SensorInnovation> innovations_;
   bool keep_innovations_ = false;
 };
 

@@ -74,10 +74,20 @@ Solution run_pass(const FilterEngine& engine, const SolveTask& task, const RunSe
     // Work that is stopped here ends what it has begun: it is a matter of seconds.
     static_cast<void>(report());
   };
+  FilterEngine::OnInnovation seen;
+  if (task.options->keep_innovations)
+    seen = [&solution](double time, const SensorInnovation& now) {
+      if (!now.offered) return;
+      InnovationHistory& history = solution.innovations[now.sensor];
+      history.time.push_back(time);
+      history.innovation.push_back(now.nu);
+      history.sigma.push_back(std::sqrt(now.S));
+      history.refused.push_back(now.accepted ? 0.0 : 1.0);
+    };
   for (std::size_t i = 0; i < task.segments.size() && going; ++i) {
     const Segment& segment = task.segments[i];
     PassEnd end = engine.smooth(setting, segment, solution.monitors, task.first_stamp[i], solution.error_columns,
-                                share.progress->threads(), filtered, smoothed);
+                                share.progress->threads(), filtered, smoothed, seen);
     solution.monitors = end.monitors;
     solution.contradiction = contradiction_of(s, end.monitors);
     if (solution.contradiction) {

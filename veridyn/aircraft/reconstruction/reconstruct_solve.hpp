@@ -51,11 +51,17 @@ struct GuardedPass {
   std::size_t count = 0;  ///< samples that hold results
 };
 
+/// Innovations of one sensor along a forward pass, in its unit.
+struct InnovationHistory {
+  std::vector<double> time, innovation, sigma, refused;  ///< `sigma` expected; `refused` 1 or 0
+};
+
 /// Estimates of filter and smoother over all segments.
 struct Solution {
   std::optional<ResultColumns> smoothed, filtered;
   Monitors monitors;
-  std::size_t count = 0;  ///< samples that hold results
+  EnumArray<Sensor, InnovationHistory, kSensors> innovations;  ///< where `keep_innovations`
+  std::size_t count = 0;                                       ///< samples that hold results
   /// Covariance of the estimated sensor errors at the end of the longest segment, and their columns.
   std::vector<std::size_t> error_columns;
   Eigen::MatrixXd error_covariance;

@@ -59,6 +59,9 @@ void InnovationMonitor::count_in(double nu, double S) noexcept {
   ++used_;
   sum_ += e;
   sum_squares_ += e * e;
+  sum_nu_ += nu;
+  sum_nu_squares_ += nu * nu;
+  sum_variance_ += S;
   constexpr double kLog2Pi = 1.8378770664093453;
   log_likelihood_ -= 0.5 * (kLog2Pi + std::log(S) + e * e);
   for (std::size_t lag = 0; lag < recent_count_; ++lag) products_[lag] += e * recent_[lag];
@@ -86,6 +89,9 @@ InnovationSummary InnovationMonitor::summary() const {
   const double n = static_cast<double>(used_);
   s.mean = sum_ / n;
   s.nis = sum_squares_ / n;
+  s.mean_size = sum_nu_ / n;
+  s.rms_size = std::sqrt(sum_nu_squares_ / n);
+  s.expected_size = std::sqrt(sum_variance_ / n);
   s.nis_bound95 = numerics::kNormal95 * std::sqrt(2.0 / n);
   s.white_bound95 = numerics::kNormal95 / std::sqrt(n);
   if (used_ > kLags + 1 && sum_squares_ > 0.0) {

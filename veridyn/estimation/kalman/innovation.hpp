@@ -28,6 +28,9 @@ struct InnovationSummary {
   std::size_t recovered = 0;  ///< taken with inflated variance by the recovery rule
   double mean = 0.0;          ///< of the normalised innovations nu / sqrt(S): 0 when unbiased
   double nis = 0.0;           ///< mean of nu^2 / S: 1 when the assumed noise is right, above when it is too small
+  /// In the sensor's unit, of the accepted samples: mean and root mean square of nu, and the root of the mean S, which
+  /// is the root mean square that the filter expected.
+  double mean_size = 0.0, rms_size = 0.0, expected_size = 0.0;
   /// 95 % of sound runs have their `nis` within 1 +- this: 1.96 sqrt(2 / n).
   double nis_bound95 = 0.0;
   double lag1 = 0.0;            ///< autocorrelation of the normalised innovations at lag 1: 0 when white
@@ -93,6 +96,7 @@ class InnovationMonitor {
   std::size_t used_ = 0;
   double sum_ = 0.0;
   double sum_squares_ = 0.0;
+  double sum_nu_ = 0.0, sum_nu_squares_ = 0.0, sum_variance_ = 0.0;
   double log_likelihood_ = 0.0;
   std::array<double, kLags> recent_{};
   std::array<double, kLags> products_{};

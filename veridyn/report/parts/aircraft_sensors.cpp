@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/numerics/statistics.hpp"
 #include "veridyn/report/figures/curves.hpp"
 
 namespace veridyn::report {
@@ -104,27 +105,68 @@ Table delay_table(const PreparedFlight& flight) {
 }
 
 Table innovation_table(const Reconstruction& rec) {
-  Table sensors{.title = "Innovations",
-                .caption =
-                    "NIS: mean square of the innovations in units of what the filter expected; 1 when the assumed "
-                    "noise is right, above when "
-                    "the sensor is worse than assumed. Lag 1: autocorrelation, 0 when white.",
-                .columns = {{.name = "Sensor"},
-                            {.name = "Assumed sigma", .digits = 3},
-                            {.name = "Unit"},
-                            {.name = "Samples"},
-                            {.name = "Refused"},
-                            {.name = "NIS", .digits = 3},
-                            {.name = "Lag 1", .digits = 2}}};
+  Table sensors{
+      .title = "Innovations",
+      .caption =
+          "NIS: mean square of the innovations in units of what the filter expected; 1 when the assumed "
+          "noise is right, above when "
+          "the sensor is worse than assumed. Lag 1: autocorrelation, 0 when white. Mean, rms and the rms that the "
+          "filter expected are in the sensor's unit.",
+      .columns = {{.name = "Sensor"},
+                  {.name = "Assumed sigma", .digits = 3},
+                  {.name = "Mean", .digits = 2},
+                  {.name = "Rms", .digits = 3},
+                  {.name = "Expected", .digits = 3},
+                  {.name = "Unit"},
+                  {.name = "Samples"},
+                  {.name = "Refused"},
+                  {.name = "NIS", .digits = 3},
+                  {.name = "Lag 1", .digits = 2}}};
   for (const SensorReport& s : rec.sensors) {
     const double scale = s.unit == "rad" ? 1.0 / kDegree : 1.0;
-    sensors.rows.push_back(
-        {.cells = {text_cell(s.channel), number_cell(s.sigma * scale), text_cell(s.unit == "rad" ? "deg" : s.unit),
-                   number_cell(static_cast<double>(s.innovations.count), 0),
-                   number_cell(static_cast<double>(s.innovations.rejected), 0), number_cell(s.innovations.nis),
-                   number_cell(s.innovations.lag1)}});
+    const auto size = [&](double v) { return number_cell(s.innovations.count > 0 ? v * scale : kNaN); };
+    sensors.rows.push_back({.cells = {text_cell(s.channel), number_cell(s.sigma * scale), size(s.innovations.mean_size),
+                                      size(s.innovations.rms_size), size(s.innovations.expected_size),
+                                      text_cell(s.unit == "rad" ? "deg" : s.unit),
+                                      number_cell(static_cast<double>(s.innovations.count), 0),
+                                      number_cell(static_cast<double>(s.innovations.rejected), 0),
+                                      number_cell(s.innovations.nis), number_cell(s.innovations.lag1)}});
   }
   return sensors;
+}
+
+/// Innovations over time, a panel for each sensor, over the band in which 95 % of them should lie.
+TimeSeries innovation_figure(const Reconstruction& rec) {
+  TimeSeries figure{.title = "Innovations over time",
+                    .caption =
+                        "Each sample less what the filter expected of it just before, over the band in which 95 % of "
+                        "them should lie; crosses are beyond the gate. All of them are in innovations.csv."};
+  for (const SensorReport& s : rec.sensors) {
+    const Channel* innovation = rec.innovations.find(s.channel);
+    if (innovation == nullptr || innovation->empty()) continue;
+    const double scale = s.unit == "rad" ? 1.0 / kDegree : 1.0;
+    const std::vector<double> time(innovation->times().begin(), innovation->times().end());
+    const std::vector<double> half =
+        scaled(rec.innovations.at("sigma_" + s.channel).value, numerics::kNormal95 * scale);
+    Line expected{.name = "expected",
+                  .y = std::vector<double>(time.size(), 0.0),
+                  .band = Band{.low = scaled(half, -1.0), .high = half},
+                  .x = time,
+                  .role = Role::kReference};
+    Line seen{.name = "innovation", .y = scaled(innovation->value, scale), .x = time, .role = Role::kMeasured};
+    Line refused{.name = "refused", .style = Style::kMarkers};
+    const std::vector<double>& gate = rec.innovations.at("refused_" + s.channel).value;
+    for (std::size_t i = 0; i < gate.size(); ++i) {
+      if (gate[i] == 0.0) continue;
+      refused.x.push_back(time[i]);
+      refused.y.push_back(seen.y[i]);
+    }
+    Panel panel{.label = s.channel, .unit = s.unit == "rad" ? "deg" : s.unit, .height = 100};
+    panel.lines = {std::move(expected), std::move(seen)};
+    if (!refused.x.empty()) panel.lines.push_back(std::move(refused));
+    figure.panels.push_back(std::move(panel));
+  }
+  return figure;
 }
 
 Table quantity_table(const Reconstruction& rec) {
@@ -159,6 +201,8 @@ Section sensors_section(const PreparedFlight& flight) {
   section.blocks.emplace_back(channel_table(flight));
   if (!flight.delays.empty()) section.blocks.emplace_back(delay_table(flight));
   section.blocks.emplace_back(innovation_table(rec));
+  if (TimeSeries figure = innovation_figure(rec); !figure.panels.empty())
+    section.blocks.emplace_back(std::move(figure));
   section.blocks.emplace_back(quantity_table(rec));
   if (!rec.sensor_errors.empty()) section.blocks.emplace_back(sensor_error_table(rec));
   if (!rec.comparison.empty()) section.blocks.emplace_back(comparison_table(rec));
