@@ -208,6 +208,10 @@ LogSections log_sections(const Arguments& arguments, std::span<const recording::
   const recording::MappedRecording mapped = map_log(log);
   LogSections sections{reading_keys(arguments), {}};
   for (const std::string& warning : log.warnings) sections.read += fmt::format("# note: {}\n", warning);
+  if (mapped.recording.channels().empty())
+    print_line(
+        arguments.common,
+        fmt::format("{}: no channel is known by its name; `veridyn inspect {}` lists what it holds", file, file));
   sections.map = recording::map_section(log, mapped, standard, aliases);
   return sections;
 }

@@ -49,6 +49,13 @@ TEST_F(Init, MapsWhatItRecognisesInTheLog) {
   EXPECT_THAT(run("inspect " + log + " --set data.time.column=clock").text, HasSubstr("gyro_x             <- p"));
 }
 
+TEST_F(Init, SaysWhereItRecognisesNothing) {
+  const std::string log = file("odd.csv", "time[s],odd[1]\n0.0,1\n0.5,2\n1.0,3\n");
+  const Outcome made = run("init aircraft --log " + log + " --out " + (folder_ / "out").string());
+  EXPECT_EQ(made.exit_code, 0);
+  EXPECT_THAT(made.text, HasSubstr("odd.csv: no channel is known by its name; `veridyn inspect"));
+}
+
 TEST_F(Init, KeepsTheStudyThatItCannotReplace) {
   file("study.toml", "mine");
   const std::string here = " --quiet --out " + folder_.string();

@@ -380,6 +380,21 @@ TEST_F(Program, RejectsTheThorFlight) {
     EXPECT_NE(p.status, estimation::ParameterStatus::kIdentified) << p.name << " = " << p.value;
 }
 
+// Neither accelerometer nor vanes, and a pitot tube that fails for seconds: the moments are regressed, and rejected.
+TEST_F(Program, RejectsTheProtoFlight) {
+  const fs::path study = test::source_folder() / "examples/studies/real/proto.toml";
+  if (!fs::exists(test::shared_folder() / "data/flight/px4/proto_flt09"))
+    GTEST_SKIP() << "the recordings beside the repository are missing";
+  const Outcome done = run("identify " + study.string() + " --out " + (folder_ / "out").string());
+  ASSERT_EQ(done.exit_code, 0) << done.text;
+  const estimation::Estimate estimate = io::read_estimate(folder_ / "out" / "estimate.json");
+  EXPECT_EQ(estimate.parameters.size(), 12U);
+  for (const auto& p : estimate.parameters)
+    EXPECT_EQ(p.status, estimation::ParameterStatus::kRejected) << p.name << " = " << p.value;
+  EXPECT_THAT(estimate.warnings, ::testing::Contains(HasSubstr("as of a stall or a blocked pitot tube")));
+  EXPECT_THAT(done.text, HasSubstr("by the headings flown (1.00"));
+}
+
 // An accelerometer without gravity: by dead reckoning the aircraft would fall at 880 m/s.
 TEST_F(Program, IdentifiesNothingWhereTheSensorsContradictEachOther) {
   const std::string flight = file("flight.toml", kFlight);

@@ -92,6 +92,23 @@ TEST(IdentificationReport, SaysWhatThePilotMayUseAndWhatTheFlightDoesNotExcite) 
   EXPECT_THAT(test::fact_of(how.facts, "alpha regressed on"), HasSubstr(" deg"));
   EXPECT_THAT(test::fact_of(how.facts, "p regressed on"), HasSubstr(" deg/s"));
   EXPECT_THAT(test::fact_of(how.facts, "accel_z regressed on"), HasSubstr(" m/s^2"));
+  EXPECT_THAT(test::blocks_of<Paragraph>(test::section_of(document, "How it was done").blocks).at(0).text,
+              AllOf(HasSubstr("a model-free extended Kalman filter"), HasSubstr("total least squares")));
+}
+
+TEST(IdentificationReport, SaysHowWithoutAFilterAndByOutputError) {
+  AnalysedFlight f = identified_flight();
+  aircraft::PreparedFlight& flight = f.analysis.flights.front();
+  flight.reconstruction.filter = aircraft::FilterKind::kNone;
+  flight.signals[aircraft::FlightSignal::kAz].value.clear();
+  f.study.identify.choose_output_error = true;
+  const Section how =
+      test::section_of(identification_report(f.study, f.analysis, {.program = "veridyn test", .command = "identify"}),
+                       "How it was done");
+  EXPECT_EQ(test::fact_of(test::blocks_of<FactList>(how.blocks).at(0).facts, "accel_z regressed on"), "");
+  EXPECT_THAT(test::blocks_of<Paragraph>(how.blocks).at(0).text,
+              AllOf(HasSubstr("taken as recorded, without a filter"), HasSubstr("(output error)"),
+                    Not(HasSubstr("Kalman")), Not(HasSubstr("least squares"))));
 }
 
 TEST(IdentificationReport, OfAGivenEstimateHasNoParametersOfItsOwn) {

@@ -66,7 +66,7 @@ void check_flight(const FlightStudy& study) {
     throw InputError(
         study.mapped.recording.source,
         fmt::format(
-            "the aircraft never flies: the {} stays below {:.1f} m/s, {} needs {:.1f} m/s (key segments.min_airspeed)",
+            "the aircraft never flies: the {} does not exceed {:.1f} m/s, {} needs {:.1f} m/s (key segments.min_airspeed)",
             what, std::ceil(10.0 * highest) / 10.0, study.subject.name, least));
   }
 }

@@ -85,6 +85,28 @@ std::string holdout_text(const FlightStudy& study) {
                      study.segments.block_s);
 }
 
+/// How airspeed and flow angles, and the parameters, were found.
+std::string method_text(const FlightStudy& study, const FlightAnalysis& analysis) {
+  const FilterKind filter = std::ranges::find_if(analysis.flights, &PreparedFlight::usable)->reconstruction.filter;
+  const std::string motion =
+      filter == FilterKind::kNone
+          ? "airspeed and flow angles are taken as recorded, without a filter"
+          : fmt::format(
+                "a {} extended Kalman filter with Dryden gust states and its fixed-interval smoother give "
+                "airspeed, flow angles and wind",
+                to_string(filter));
+  const std::string estimator =
+      study.identify.choose_output_error
+          ? "the parameters of an axis are moved together until the motion integrated from the recorded deflections "
+            "fits (output error)"
+          : "coefficients follow from the rigid-body equations; each is estimated by ordinary, total and generalised "
+            "total least squares on the same samples, with the regressors' errors propagated from the sensors";
+  return fmt::format(
+      "Sensors are brought onto one clock; {}; all signals pass one zero-phase filter; {}; what is recommended has "
+      "passed the checks above and predicts the hold-out.",
+      motion, estimator);
+}
+
 Section method_section(const FlightStudy& study, const FlightAnalysis& analysis) {
   Section section{.title = "How it was done", .id = "method", .folded = true};
   const FlightSignals& s = std::ranges::find_if(analysis.flights, &PreparedFlight::usable)->signals;
@@ -97,22 +119,14 @@ Section method_section(const FlightStudy& study, const FlightAnalysis& analysis)
       {"Estimator", study.identify.method_name()}};
   for (const FlightSignal which : {FlightSignal::kAlpha, FlightSignal::kBeta, FlightSignal::kP, FlightSignal::kAz}) {
     const GridSignal& signal = s[which];
+    if (!signal.available()) continue;
     const bool angle = which != FlightSignal::kAz;
     facts.push_back({fmt::format("{} regressed on", kFlightSignalNames[which]),
                      fmt::format("{}, error {:.3g} {}", signal.origin, angle ? signal.sigma / kDegree : signal.sigma,
                                  which == FlightSignal::kP ? "deg/s" : (angle ? "deg" : "m/s^2"))});
   }
   section.blocks.emplace_back(FactList{std::move(facts)});
-  Paragraph text;
-  text.text =
-      "Sensors are brought onto one clock; a model-free extended Kalman filter with Dryden gust states and "
-      "its fixed-interval smoother give "
-      "airspeed, flow angles and wind; all signals pass one zero-phase filter; coefficients follow from the "
-      "rigid-body equations; each is "
-      "estimated by ordinary, total and generalised total least squares on the same samples, with the "
-      "regressors' errors propagated from "
-      "the sensors; what is recommended has passed the checks above and predicts the hold-out.";
-  section.blocks.emplace_back(std::move(text));
+  section.blocks.emplace_back(Paragraph{.text = method_text(study, analysis)});
   return section;
 }
 

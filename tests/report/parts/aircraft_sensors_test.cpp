@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/report/shown.hpp"
 #include "veridyn/core/constants.hpp"
 
@@ -76,6 +78,34 @@ TEST(SensorsSection, ShowsAnglesInDegrees) {
   EXPECT_THAT(test::shown_row(quantities, 0),
               ElementsAre("beta", "1.00", "4.00", "deg", "weakly observable", "beta is weak"));
   EXPECT_EQ(quantities.rows[0].cells[4].status, Status::kCaution);
+}
+
+TEST(SensorsSection, DrawsInnovationsOverWhatWasExpected) {
+  PreparedFlight flight;
+  aircraft::Reconstruction& rec = flight.reconstruction;
+  rec.sensors.resize(2);
+  rec.sensors[0].channel = "alpha";
+  rec.sensors[0].unit = "rad";
+  rec.sensors[1].channel = "vel_north";
+  EXPECT_TRUE(test::blocks_of<TimeSeries>(sensors_section(flight).blocks).empty()) << "not kept";
+  const TimeBase time = make_time_base({0.0, 0.1, 0.2, 0.3});
+  rec.innovations.add(make_channel("alpha", "rad", time, {0.0, kDegree, -20.0 * kDegree, 0.0}));
+  rec.innovations.add(make_channel("sigma_alpha", "rad", time, {50.0 * kDegree, kDegree, kDegree, kDegree}));
+  rec.innovations.add(make_channel("refused_alpha", "1", time, {0.0, 0.0, 1.0, 0.0}));
+  const Section section = sensors_section(flight);
+  check({.sections = {section}});
+  const std::vector<TimeSeries> figures = test::blocks_of<TimeSeries>(section.blocks);
+  ASSERT_EQ(figures.size(), 1U);
+  ASSERT_EQ(figures[0].panels.size(), 1U);
+  const Panel& panel = figures[0].panels[0];
+  EXPECT_EQ(panel.unit, "deg");
+  ASSERT_EQ(panel.lines.size(), 4U);
+  EXPECT_NEAR(panel.lines[0].y.at(2), -20.0, 1e-9);
+  EXPECT_TRUE(std::isnan(panel.lines[1].y.at(0))) << "before anything is known";
+  EXPECT_NEAR(panel.lines[1].y.at(1), 1.96, 0.001);
+  EXPECT_NEAR(panel.lines[2].y.at(1), -1.96, 0.001);
+  EXPECT_EQ(panel.lines[3].x, (std::vector<double>{0.2}));
+  EXPECT_NEAR(panel.lines[3].y.at(0), -20.0, 1e-9);
 }
 
 TEST(SensorsSection, SaysHowMuchOfASensorsErrorTheFlightDetermines) {

@@ -108,12 +108,13 @@ Table innovation_table(const Reconstruction& rec) {
   Table sensors{
       .title = "Innovations",
       .caption =
-          "NIS: mean square of the innovations in units of what the filter expected; 1 when the assumed "
+          "Noise: the sensor's, as assumed (1 sigma). NIS: mean square of the innovations in units of what the filter "
+          "expected; 1 when the assumed "
           "noise is right, above when "
           "the sensor is worse than assumed. Lag 1: autocorrelation, 0 when white. Mean, rms and the rms that the "
           "filter expected are in the sensor's unit.",
       .columns = {{.name = "Sensor"},
-                  {.name = "Assumed sigma", .digits = 3},
+                  {.name = "Noise", .digits = 3},
                   {.name = "Mean", .digits = 2},
                   {.name = "Rms", .digits = 3},
                   {.name = "Expected", .digits = 3},
@@ -137,22 +138,23 @@ Table innovation_table(const Reconstruction& rec) {
 
 /// Innovations over time, a panel for each sensor, over the band in which 95 % of them should lie.
 TimeSeries innovation_figure(const Reconstruction& rec) {
-  TimeSeries figure{.title = "Innovations over time",
-                    .caption =
-                        "Each sample less what the filter expected of it just before, over the band in which 95 % of "
-                        "them should lie; crosses are beyond the gate. All of them are in innovations.csv."};
+  TimeSeries figure{
+      .title = "Innovations over time",
+      .caption =
+          "Each sample less what the filter expected of it just before; 95 % should lie between the dashed "
+          "lines, and dots are beyond the gate. All of them are in innovations.csv."};
   for (const SensorReport& s : rec.sensors) {
     const Channel* innovation = rec.innovations.find(s.channel);
     if (innovation == nullptr || innovation->empty()) continue;
     const double scale = s.unit == "rad" ? 1.0 / kDegree : 1.0;
     const std::vector<double> time(innovation->times().begin(), innovation->times().end());
-    const std::vector<double> half =
-        scaled(rec.innovations.at("sigma_" + s.channel).value, numerics::kNormal95 * scale);
-    Line expected{.name = "expected",
-                  .y = std::vector<double>(time.size(), 0.0),
-                  .band = Band{.low = scaled(half, -1.0), .high = half},
-                  .x = time,
-                  .role = Role::kReference};
+    std::vector<double> half = scaled(rec.innovations.at("sigma_" + s.channel).value, numerics::kNormal95 * scale);
+    // What the first samples, before anything is known, would do to the panel's range.
+    const double most = 4.0 * numerics::median(half);
+    for (double& value : half)
+      if (value > most) value = kNaN;
+    Line above{.name = "97.5 %", .y = half, .x = time, .role = Role::kReference};
+    Line below{.name = "2.5 %", .y = scaled(half, -1.0), .x = time, .role = Role::kReference};
     Line seen{.name = "innovation", .y = scaled(innovation->value, scale), .x = time, .role = Role::kMeasured};
     Line refused{.name = "refused", .style = Style::kMarkers};
     const std::vector<double>& gate = rec.innovations.at("refused_" + s.channel).value;
@@ -162,7 +164,7 @@ TimeSeries innovation_figure(const Reconstruction& rec) {
       refused.y.push_back(seen.y[i]);
     }
     Panel panel{.label = s.channel, .unit = s.unit == "rad" ? "deg" : s.unit, .height = 100};
-    panel.lines = {std::move(expected), std::move(seen)};
+    panel.lines = {std::move(seen), std::move(above), std::move(below)};
     if (!refused.x.empty()) panel.lines.push_back(std::move(refused));
     figure.panels.push_back(std::move(panel));
   }
