@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "veridyn/io/packets/crc32.hpp"
 #include "veridyn/live/link/bytes.hpp"
-#include "veridyn/live/link/crc32.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::live {
@@ -40,7 +40,7 @@ TEST(PlatformOrder, LiesInItsPacketAsTheDocumentSays) {
   EXPECT_EQ(number_at<float>(b, 44), 0.03F);
   EXPECT_EQ(number_at<float>(b, 48), 1.0F);
   EXPECT_EQ(number_at<float>(b, 68), -3.0F);
-  EXPECT_EQ(number_at<std::uint32_t>(b, 80), crc32(b.substr(0, 80)));
+  EXPECT_EQ(number_at<std::uint32_t>(b, 80), io::crc32(b.substr(0, 80)));
 }
 
 TEST(PlatformOrder, ComesOutAsItWentIn) {
@@ -87,7 +87,7 @@ TEST(PlatformAnswer, OfVersionTwoSaysWhoCommandsThePlatform) {
   EXPECT_EQ(number_at<std::uint32_t>(b, 48), 11U);
   EXPECT_EQ(number_at<std::uint32_t>(b, 52), 0x7f000001U);
   EXPECT_EQ(number_at<std::uint16_t>(b, 56), 4711U);
-  EXPECT_EQ(number_at<std::uint32_t>(b, 60), crc32(b.substr(0, 60)));
+  EXPECT_EQ(number_at<std::uint32_t>(b, 60), io::crc32(b.substr(0, 60)));
   const auto back = decode_answer(b);
   ASSERT_TRUE(back);
   EXPECT_EQ(back->commander, a.commander);

@@ -1,7 +1,6 @@
 #include "veridyn/io/ros/mcap.hpp"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cstring>
@@ -11,6 +10,7 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/log/mapped_file.hpp"
+#include "veridyn/io/packets/crc32.hpp"
 #include "veridyn/io/ros/mcap_chunk.hpp"
 #include "veridyn/io/ros/ros_log.hpp"
 
@@ -77,10 +77,6 @@ class RecordFields {
   bool failed_ = false;
 };
 
-std::uint32_t checksum(std::string_view bytes) {
-  return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
-}
-
 class McapReader {
  public:
   McapReader(std::string_view bytes, RosLog& messages, Log& log) : bytes_(bytes), messages_(messages), log_(log) {}
@@ -129,7 +125,7 @@ class McapReader {
     const auto crc = fields.number<std::uint32_t>();
     if (start < kMcapMagic.size() || start - kMcapMagic.size() >= footer) return;
     const std::size_t begin = start - kMcapMagic.size();
-    if (crc != 0 && checksum(records.substr(begin, records.size() - 4 - begin)) != crc) return;
+    if (crc != 0 && crc32(records.substr(begin, records.size() - 4 - begin)) != crc) return;
     std::string_view summary = records.substr(begin, footer - begin);
     while (summary.size() >= kRecordHeader) {
       const auto op = static_cast<unsigned char>(summary.front());
@@ -306,7 +302,7 @@ class McapReader {
       }
       return;
     }
-    if (crc != 0 && chunk.complete && checksum(chunk.records) != crc) {
+    if (crc != 0 && chunk.complete && crc32(chunk.records) != crc) {
       lose_chunk(body);
       ++wrong_checksums_;
       return;

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <span>
 
+#include "veridyn/io/packets/crc32.hpp"
 #include "veridyn/live/link/bytes.hpp"
-#include "veridyn/live/link/crc32.hpp"
 
 namespace veridyn::live {
 namespace {
@@ -27,13 +27,13 @@ PosePacket encode(const CameraPose& pose) {
   for (Eigen::Index row = 0; row < 3; ++row) {
     for (Eigen::Index column = row; column < 3; ++column, at += 8) put_at(out, at, pose.covariance(row, column));
   }
-  put_at(out, kPoseCheckAt, crc32({bytes.data(), kPoseCheckAt}));
+  put_at(out, kPoseCheckAt, io::crc32({bytes.data(), kPoseCheckAt}));
   return bytes;
 }
 
 std::optional<CameraPose> decode_pose(std::string_view bytes) {
   if (bytes.size() != kPosePacketBytes || !bytes.starts_with(kPoseStart)) return std::nullopt;
-  if (number_at<std::uint32_t>(bytes, kPoseCheckAt) != crc32(bytes.substr(0, kPoseCheckAt))) return std::nullopt;
+  if (number_at<std::uint32_t>(bytes, kPoseCheckAt) != io::crc32(bytes.substr(0, kPoseCheckAt))) return std::nullopt;
   CameraPose p;
   p.sequence = number_at<std::uint32_t>(bytes, kPoseSequenceAt);
   p.stamp = number_at<std::int64_t>(bytes, kPoseStampAt);

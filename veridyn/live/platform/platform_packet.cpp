@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "veridyn/io/packets/crc32.hpp"
 #include "veridyn/live/link/bytes.hpp"
-#include "veridyn/live/link/crc32.hpp"
 
 namespace veridyn::live {
 namespace {
@@ -19,7 +19,7 @@ constexpr std::size_t kCommander = 52, kCommanderPort = 56;  // of version 2 of 
 
 void seal(std::span<char> bytes, std::string_view start) {
   start.copy(bytes.data(), start.size());
-  put_at(bytes, bytes.size() - 4, crc32({bytes.data(), bytes.size() - 4}));
+  put_at(bytes, bytes.size() - 4, io::crc32({bytes.data(), bytes.size() - 4}));
 }
 
 /// What order and answer begin with.
@@ -41,7 +41,7 @@ Packet read_packet_head(std::string_view bytes) {
 
 bool is_sealed(std::string_view bytes, std::string_view start, std::size_t size) {
   return bytes.size() == size && bytes.starts_with(start) &&
-         number_at<std::uint32_t>(bytes, size - 4) == crc32(bytes.substr(0, size - 4));
+         number_at<std::uint32_t>(bytes, size - 4) == io::crc32(bytes.substr(0, size - 4));
 }
 
 }  // namespace

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/io/packets/crc32.hpp"
 #include "veridyn/live/link/bytes.hpp"
-#include "veridyn/live/link/crc32.hpp"
 
 namespace veridyn::live {
 namespace {
@@ -148,7 +148,7 @@ std::string framed(std::string_view content) {
   std::string block(kFrame, '\0');
   kBlockStart.copy(block.data(), kBlockStart.size());
   put_at(std::span(block), 4, static_cast<std::uint32_t>(content.size()));
-  put_at(std::span(block), 8, crc32(content));
+  put_at(std::span(block), 8, io::crc32(content));
   block += content;
   return block;
 }
@@ -183,7 +183,8 @@ std::optional<std::string_view> next_block(std::string_view bytes, std::size_t& 
     if (rest.size() >= kFrame && rest.starts_with(kBlockStart)) {
       const std::size_t length = number_at<std::uint32_t>(rest, 4);
       const std::string_view content = rest.substr(kFrame, length);
-      if (length <= kLargestBlock && content.size() == length && crc32(content) == number_at<std::uint32_t>(rest, 8)) {
+      if (length <= kLargestBlock && content.size() == length &&
+          io::crc32(content) == number_at<std::uint32_t>(rest, 8)) {
         at += kFrame + length;
         return content;
       }

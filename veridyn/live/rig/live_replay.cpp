@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "veridyn/core/error.hpp"
-#include "veridyn/live/link/crc32.hpp"
+#include "veridyn/io/packets/crc32.hpp"
 #include "veridyn/live/rig/recorded_rig.hpp"
 
 namespace veridyn::live {
@@ -78,7 +78,7 @@ class Replayer {
     std::array<char, 4 + kOrderBytes> chained{};
     std::memcpy(chained.data(), &fingerprint_, sizeof fingerprint_);
     std::copy(order.begin(), order.end(), chained.begin() + 4);
-    fingerprint_ = crc32({chained.data(), chained.size()});
+    fingerprint_ = io::crc32({chained.data(), chained.size()});
     last_time_ = record.time;
     r_.duration = seconds(record.time - start_);
     if (s.state != before || r_.changes.empty()) r_.changes.push_back({r_.duration, s.state, rig_.rig().readiness()});

@@ -2,14 +2,14 @@
 
 #include <algorithm>
 
-#include "veridyn/live/link/crc32.hpp"
+#include "veridyn/io/packets/crc32.hpp"
 
 namespace veridyn::live {
 namespace {
 
 static_assert(kLongestFrame - 1 <= 254, "one byte of stuffing is enough only for fewer than 254 bytes");
 
-std::uint32_t crc_of(Bytes bytes) { return crc32({reinterpret_cast<const char*>(bytes.data()), bytes.size()}); }
+std::uint32_t crc_of(Bytes bytes) { return io::crc32({reinterpret_cast<const char*>(bytes.data()), bytes.size()}); }
 
 /// Stuffs bytes[1..size) in place: bytes[0] and every zero become the distance to the next zero or the end.
 void stuff(std::span<std::uint8_t> bytes) {

@@ -1,4 +1,4 @@
-#include "veridyn/live/link/crc32.hpp"
+#include "veridyn/io/packets/crc32.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "veridyn/numerics/random.hpp"
 
-namespace veridyn::live {
+namespace veridyn::io {
 namespace {
 
 TEST(Crc32, IsThatOfEthernet) {
@@ -30,4 +30,4 @@ TEST(Crc32, IsTheRemainderOfTheDivision) {
 }
 
 }  // namespace
-}  // namespace veridyn::live
+}  // namespace veridyn::io
