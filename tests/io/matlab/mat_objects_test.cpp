@@ -66,6 +66,37 @@ TEST(MatObjects, ReadATableWithAColumnOfStamps) {
   EXPECT_THAT(log.find("t1")->find("V")->values.numbers(), ElementsAre(7.0, 8.0, 9.0));
 }
 
+TEST(MatObjects, ReadTheUnitsOfColumns) {
+  const std::string units =
+      ObjectFile::cells({ObjectFile::text("deg/sec"), ObjectFile::text("furlong"), ObjectFile::text("")});
+  ObjectFile file;
+  auto any = timetable_fields(testing::mat_duration(file, {500, 520, 540}), 3.0);
+  any.emplace_back("varUnits", units);
+  file.variable("flight", "timetable", file.add("timetable", {{"any", ObjectFile::fields(any)}}, true));
+  const Log log = read_mat(file.bytes(), "x.mat");
+  EXPECT_EQ(log.find("flight")->find("p")->unit, "deg/s");
+  EXPECT_EQ(log.find("flight")->find("acc[1]")->unit, "1");
+  EXPECT_THAT(log.damage.notes, Contains("the unit of column 'acc' is not known: furlong"));
+
+  // A table's stamps in the unit that it says; of as many units as columns only.
+  const auto table = [](const std::vector<std::string>& of_columns) {
+    ObjectFile made;
+    made.variable(
+        "t1", "table",
+        made.add("table", {{"data", ObjectFile::cells({ObjectFile::reals({0, 20, 40}), ObjectFile::reals({7, 8, 9})})},
+                           {"nrows", ObjectFile::reals({3})},
+                           {"nvars", ObjectFile::reals({2})},
+                           {"varnames", ObjectFile::cells({ObjectFile::text("time"), ObjectFile::text("V")})},
+                           {"props", ObjectFile::fields({{"VariableUnits", ObjectFile::cells(of_columns)}})}}));
+    return read_mat(made.bytes(), "x.mat");
+  };
+  const Log with = table({ObjectFile::text("ms"), ObjectFile::text("km/h")});
+  EXPECT_THAT(*with.find("t1")->time, ElementsAre(0.0, 0.02, 0.04));
+  EXPECT_EQ(with.find("t1")->find("V")->unit, "km/h");
+  EXPECT_EQ(table({}).find("t1")->find("V")->unit, "1");
+  EXPECT_EQ(table({ObjectFile::text("ms")}).find("t1")->find("V")->unit, "1");
+}
+
 // Whatever does not agree leaves it at saying how to convert the variable.
 TEST(MatObjects, AreNotReadWhereAnythingIsNotAsExpected) {
   const auto refused = [](const std::string& bytes) {

@@ -15,6 +15,7 @@
 #include "veridyn/io/matlab/mat_value.hpp"
 #include "veridyn/io/tables/csv_header.hpp"
 #include "veridyn/io/tables/time_column.hpp"
+#include "veridyn/io/tables/unit_words.hpp"
 
 namespace veridyn::io {
 namespace {
@@ -312,7 +313,7 @@ class Builder {
     }
     if (!fields.empty()) {
       std::vector<double> stamps = made ? made_stamps(rows) : time->numbers;
-      if (!made) to_seconds({time->name, time->row_times ? "s" : ""}, stamps);
+      if (!made) to_seconds({time->name, time->row_times ? "s" : unit_in_words(time->unit).value_or("")}, stamps);
       set_series(series, std::move(stamps), std::move(fields), std::move(columns));
       log_.topics.push_back(std::move(series));
     }
@@ -324,16 +325,25 @@ class Builder {
     return is_matrix(item) && item.extents[0] == rows;
   }
 
-  static void add_series(MatValue& item, const std::string& label, std::size_t rows, std::vector<LogField>& fields,
-                         std::vector<std::vector<double>>& columns) {
+  /// In the words of `parse_unit`: "1" where none is given, or none that is known, which is noted.
+  std::string unit_of(const MatValue& item) {
+    if (item.unit.empty()) return "1";
+    if (const auto known = unit_in_words(item.unit)) return *known;
+    log_.damage.notes.push_back(fmt::format("the unit of column '{}' is not known: {}", item.name, item.unit));
+    return "1";
+  }
+
+  void add_series(MatValue& item, const std::string& label, std::size_t rows, std::vector<LogField>& fields,
+                  std::vector<std::vector<double>>& columns) {
+    const std::string unit = unit_of(item);
     if (item.numbers.size() == rows) {
-      fields.push_back({label, "1", 1.0, {}, {}});
+      fields.push_back({label, unit, 1.0, {}, {}});
       columns.push_back(std::move(item.numbers));
       return;
     }
     for (std::size_t k = 0; k * rows < item.numbers.size(); ++k) {
       const auto begin = item.numbers.begin() + signed_index(k * rows);
-      fields.push_back({fmt::format("{}[{}]", label, k), "1", 1.0, {}, {}});
+      fields.push_back({fmt::format("{}[{}]", label, k), unit, 1.0, {}, {}});
       columns.emplace_back(begin, begin + signed_index(rows));
     }
     item.numbers = {};

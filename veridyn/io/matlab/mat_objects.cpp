@@ -200,12 +200,14 @@ std::optional<std::vector<double>> MatObjects::times(const MatValue& value, std:
 }
 
 std::optional<MatValue> MatObjects::made_of(const std::string& name, const MatValue& data, const MatValue& names,
-                                            double rows, double variables, const MatValue* row_times,
-                                            std::vector<std::string>& left_out) const {
+                                            const MatValue* units, double rows, double variables,
+                                            const MatValue* row_times, std::vector<std::string>& left_out) const {
   if (data.kind != MatValue::Kind::kCell || names.kind != MatValue::Kind::kCell || !is_whole(rows, 1e9) ||
       static_cast<double>(data.items.size()) != variables || static_cast<double>(names.items.size()) != variables)
     return std::nullopt;
   const auto count = static_cast<std::size_t>(rows);
+  const bool with_units =
+      units != nullptr && units->kind == MatValue::Kind::kCell && units->items.size() == data.items.size();
   MatValue made;
   made.name = name;
   made.kind = MatValue::Kind::kStruct;
@@ -230,10 +232,12 @@ std::optional<MatValue> MatObjects::made_of(const std::string& name, const MatVa
     if (label.kind != MatValue::Kind::kText || label.text.empty()) return std::nullopt;
     if (auto seconds = duration(item); seconds && seconds->size() == count) {
       made.items.push_back(column(label.text, *std::move(seconds)));
+      made.items.back().unit = "s";
     } else if (item.kind == MatValue::Kind::kNumbers && !reference(item)) {
       if (item.extents.size() < 2 || item.extents[0] != count) return std::nullopt;
       made.items.push_back(item);
       made.items.back().name = label.text;
+      if (with_units && units->items[i].kind == MatValue::Kind::kText) made.items.back().unit = units->items[i].text;
     } else {
       left_out.push_back(label.text);
     }
@@ -249,7 +253,10 @@ std::optional<MatValue> MatObjects::table(const MatValue& object, std::vector<st
     const MatValue *const data = found_in(*found, "data"), *const names = found_in(*found, "varnames");
     const auto rows = scalar(found_in(*found, "nrows")), variables = scalar(found_in(*found, "nvars"));
     if (data == nullptr || names == nullptr || !rows || !variables) return std::nullopt;
-    return made_of(object.name, *data, *names, *rows, *variables, nullptr, left_out);
+    const MatValue* const more = found_in(*found, "props");
+    const bool has_more = more != nullptr && more->kind == MatValue::Kind::kStruct;
+    const MatValue* const units = has_more ? more->find("VariableUnits") : nullptr;
+    return made_of(object.name, *data, *names, units, *rows, *variables, nullptr, left_out);
   }
   const MatValue* const any = object.class_name == "timetable" ? found_in(*found, "any") : nullptr;
   if (any == nullptr || any->kind != MatValue::Kind::kStruct) return std::nullopt;
@@ -257,7 +264,7 @@ std::optional<MatValue> MatObjects::table(const MatValue& object, std::vector<st
                         *const stamps = any->find("rowTimes");
   const auto rows = scalar(any->find("numRows")), variables = scalar(any->find("numVars"));
   if (data == nullptr || names == nullptr || stamps == nullptr || !rows || !variables) return std::nullopt;
-  return made_of(object.name, *data, *names, *rows, *variables, stamps, left_out);
+  return made_of(object.name, *data, *names, any->find("varUnits"), *rows, *variables, stamps, left_out);
 }
 
 }  // namespace veridyn::io

@@ -25,8 +25,8 @@ class MatObjects {
 
   /// A table or timetable as a struct of its columns of numbers, durations as seconds. Times of rows are the first
   /// field, `Time` in seconds (`MatValue::row_times`); of dates since midnight of the first, whose day is a text
-  /// `date`. Columns of other kinds are in `left_out`. Nothing of objects of other classes, and where anything is not
-  /// as expected.
+  /// `date`. Columns have the table's units (`VariableUnits`), durations "s". Columns of other kinds are in `left_out`.
+  /// Nothing of objects of other classes, and where anything is not as expected.
   [[nodiscard]] std::optional<MatValue> table(const MatValue& object, std::vector<std::string>& left_out) const;
 
  private:
@@ -43,8 +43,8 @@ class MatObjects {
   /// The words of one of the regions 0 to 4 of the first cell.
   [[nodiscard]] const std::vector<std::uint32_t>& words(std::size_t region) const { return regions_[region]; }
   [[nodiscard]] std::optional<MatValue> made_of(const std::string& name, const MatValue& data, const MatValue& names,
-                                                double rows, double variables, const MatValue* row_times,
-                                                std::vector<std::string>& left_out) const;
+                                                const MatValue* units, double rows, double variables,
+                                                const MatValue* row_times, std::vector<std::string>& left_out) const;
   /// [s]
   [[nodiscard]] std::optional<std::vector<double>> duration(const MatValue& value) const;
   /// [s since 1970]

@@ -43,6 +43,7 @@ struct MatValue {
   enum class Kind { kNumbers, kText, kCell, kStruct, kOther };
   std::string name;        ///< of the variable or struct field; empty in cells
   std::string class_name;  ///< of an object: "timetable", "table"; its `numbers` are a reference (`MatObjects`)
+  std::string unit;        ///< of a column of a table, as the table has it; empty: none
   bool row_times = false;  ///< the stamps of a timetable [s]
   Kind kind = Kind::kOther;
   std::vector<std::size_t> extents;  ///< column-major
