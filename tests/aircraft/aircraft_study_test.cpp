@@ -103,6 +103,33 @@ TEST(AircraftStudy, ASurfaceThatIsZeroThroughoutRejectsNothing) {
   }
 }
 
+// As on a transport aircraft: 0.4 deg of elevator, by sensors good enough to see it.
+TEST(AircraftStudy, IdentifiesFromGentleManoeuvres) {
+  std::string text =
+      "[subject]\nbuiltin = \"unatrap\"\n[flight]\nduration = 120\nairspeed = 20\nturbulence = \"none\"\n";
+  for (const double start : {20.0, 50.0, 80.0})
+    text += fmt::format(
+        "[[flight.manoeuvre]]\nkind = \"3211\"\nstart = {}\nsurfaces = [\"elevator\"]\namplitude = \"0.4 deg\"\n"
+        "pulse = 0.4\n",
+        start);
+  text +=
+      "[sensors]\nset = \"perfect\"\n[reconstruct]\nsensors = \"reference\"\nturbulence = \"none\"\n"
+      "[reconstruct.sigma]\naccelerometer = 0.005\ngyro = 0.0005\nattitude = 0.001\nvelocity = 0.01\n"
+      "velocity_down = 0.01\ndynamic_pressure = 0.5\nalpha = 0.0005\nbeta = 0.0005\n";
+  Progress silent;
+  const FlightStudy study = read_study(Study::parse(text, "gentle.toml"), silent);
+  const FlightAnalysis analysis = identify(study, silent);
+  EXPECT_EQ(analysis.flights.front().segments.longitudinal.excited.size(), 3U);
+  EXPECT_THAT(identified_in(analysis), ::testing::IsSupersetOf({"CL", "Cm"}));
+  const CoefficientModel& truth = *study.subject.model.find(Coefficient::kCm);
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const estimation::Parameter* const p = analysis.estimate.find(parameter_name(Coefficient::kCm, truth.terms[i]));
+    ASSERT_NE(p, nullptr);
+    EXPECT_NEAR(p->value, truth.values[i], 2.0 * (p->high95 - p->low95)) << p->name;
+    EXPECT_NEAR(p->value, truth.values[i], 0.1 * std::abs(truth.values[i]) + 0.01) << p->name;
+  }
+}
+
 TEST(AircraftStudy, DoesWithoutAFilterWhereThatIsAskedFor) {
   Progress silent;
   FlightStudy study = calm_study(150.0, "filter = \"none\"\n");

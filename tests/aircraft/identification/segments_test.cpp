@@ -83,6 +83,43 @@ TEST(Segments, NeedAnAnswerOfTheBody) {
   EXPECT_TRUE(find_segments(flight.signals(), options()).longitudinal.excited.empty());
 }
 
+// A transport aircraft: the elevator moves by 0.4 deg, and the body answers with half a degree a second.
+TEST(Segments, FollowAFlightThatIsGentleThroughout) {
+  Flight flight;
+  for (double& e : flight.elevator) e *= 0.1;
+  for (double& q : flight.q) q *= 0.025;
+  const AxisSegments found = find_segments(flight.signals(), options()).longitudinal;
+  ASSERT_EQ(found.excited.size(), 1U);
+  EXPECT_NEAR(found.excited[0].begin, 60.0, 2.0);
+  EXPECT_NEAR(found.excited[0].end, 90.0, 2.0);
+  EXPECT_NEAR(found.input_threshold_rad, 0.5 * 0.4 * kDegree / std::sqrt(2.0), 0.02 * kDegree);
+  EXPECT_THAT(found.text, HasSubstr("exceeds 0.14 deg"));
+
+  SegmentOptions strict = options();
+  strict.min_input_rad = 0.01;
+  EXPECT_TRUE(find_segments(flight.signals(), strict).longitudinal.excited.empty()) << "as it was before";
+  strict.min_input_rad.reset();
+  strict.min_rate_radps = 0.035;
+  EXPECT_TRUE(find_segments(flight.signals(), strict).longitudinal.excited.empty());
+
+  // One short manoeuvre of a long flight counts by the calm parts alone; trembling of hundredths of a degree does not.
+  for (std::size_t k = 0; k < flight.elevator.size(); ++k)
+    if (const double t = kStep * static_cast<double>(k); t > 64.0 && t < 90.0) flight.elevator[k] *= 0.025;
+  const AxisSegments single = find_segments(flight.signals(), options()).longitudinal;
+  ASSERT_EQ(single.excited.size(), 1U);
+  EXPECT_NEAR(single.excited[0].end, 64.0, 2.0);
+  EXPECT_NEAR(single.input_threshold_rad, 0.05 * kDegree, 1e-9);
+}
+
+// As much as usual where the flight is lively, however much that is.
+TEST(Segments, AskOfALivelyFlightWhatTheyAlwaysDid) {
+  Flight flight;
+  for (double& e : flight.elevator) e *= 3.0;
+  const AxisSegments found = find_segments(flight.signals(), options()).longitudinal;
+  EXPECT_DOUBLE_EQ(found.input_threshold_rad, 0.01);
+  EXPECT_DOUBLE_EQ(found.rate_threshold_radps, 0.035);
+}
+
 TEST(Segments, FollowTheUser) {
   const Flight flight;
   SegmentOptions given = options();

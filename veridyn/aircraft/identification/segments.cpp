@@ -42,9 +42,9 @@ SegmentOptions SegmentOptions::read(const StudyTable& table) {
   SegmentOptions options;
   options.read_keys(table);
   options.min_airspeed_mps = table.number_or("min_airspeed", "m/s", options.min_airspeed_mps);
-  options.min_input_rad = table.positive_or("min_input", "rad", options.min_input_rad);
+  if (table.has("min_input")) options.min_input_rad = table.positive("min_input", "rad");
   options.ambient_factor = table.number_or("ambient_factor", "1", options.ambient_factor);
-  options.min_rate_radps = table.positive_or("min_rate", "rad/s", options.min_rate_radps);
+  if (table.has("min_rate")) options.min_rate_radps = table.positive("min_rate", "rad/s");
   options.longitudinal = recording::read_spans(table, "longitudinal");
   options.lateral = recording::read_spans(table, "lateral");
   return options;
@@ -71,6 +71,20 @@ Airborne airborne(const SegmentSignals& signals, const numerics::UniformGrid& gr
   return found;
 }
 
+/// The least activity that counts where none is given: an absolute one, and less in a flight that is gentle throughout,
+/// such as that of a transport aircraft, whose manoeuvres move the elevator by tenths of a degree.
+struct LeastActivity {
+  double usual = 0.0, least = 0.0;
+
+  [[nodiscard]] double of(const std::optional<double>& given, const std::vector<double>& activity,
+                          const Airborne& flight) const {
+    constexpr double kMostActive = 0.95, kShare = 0.5;
+    return given.value_or(std::clamp(kShare * quantile_inside(activity, flight.inside, kMostActive), least, usual));
+  }
+};
+constexpr LeastActivity kLeastInput{.usual = 0.01, .least = 0.05 * kDegree};
+constexpr LeastActivity kLeastRate{.usual = 0.035, .least = 0.1 * kDegree};
+
 /// One axis: `input` is the activity of its surfaces, `rate` that of the body.
 AxisSegments find_axis(Axis axis, const std::vector<TimeSpan>& given, const std::vector<double>& input,
                        const std::vector<double>& rate, const Airborne& flight, const numerics::UniformGrid& grid,
@@ -86,18 +100,20 @@ AxisSegments find_axis(Axis axis, const std::vector<TimeSpan>& given, const std:
     found.text = fmt::format("{} segments: none, the log has no surface deflection", to_string(axis));
   } else {
     found.ambient_input_rad = quantile_inside(input, flight.inside, 0.2);
-    found.input_threshold_rad = std::max(options.min_input_rad, options.ambient_factor * found.ambient_input_rad);
+    found.input_threshold_rad = std::max(kLeastInput.of(options.min_input_rad, input, flight),
+                                         options.ambient_factor * found.ambient_input_rad);
+    found.rate_threshold_radps = kLeastRate.of(options.min_rate_radps, rate, flight);
     const auto excited = [&](std::size_t i) {
-      return flight.inside[i] && input[i] > found.input_threshold_rad && rate[i] > options.min_rate_radps;
+      return flight.inside[i] && input[i] > found.input_threshold_rad && rate[i] > found.rate_threshold_radps;
     };
     found.excited = recording::merged(recording::stretches(grid, grid.count, excited), options.merge_s);
     recording::drop_shorter(found.excited, options.min_duration_s);
     found.text = fmt::format(
         "{} segments: {} found, {:.0f} s of {:.0f} s in the air, where {} activity over {:.0f} s exceeds {:.2f} deg "
-        "(calmest fifth of the flight: {:.2f} deg) and the body rate answers with more than {:.1f} deg/s",
+        "(calmest fifth of the flight: {:.2f} deg) and the body rate answers with more than {:.2g} deg/s",
         to_string(axis), found.excited.size(), found.excited_s(), recording::total_s(flight.spans),
         axis == Axis::kLongitudinal ? "elevator" : "aileron or rudder", options.window_s,
-        found.input_threshold_rad / kDegree, found.ambient_input_rad / kDegree, options.min_rate_radps / kDegree);
+        found.input_threshold_rad / kDegree, found.ambient_input_rad / kDegree, found.rate_threshold_radps / kDegree);
   }
   recording::AssignedBlocks blocks =
       recording::assign_blocks(found.excited, options, recording::Neighbours::kJoined, kShortestBlock_s);

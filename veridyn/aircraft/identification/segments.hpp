@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,9 +20,12 @@ enum class Axis { kLongitudinal, kLateral };
 struct SegmentOptions : recording::SegmentOptions {
   double min_airspeed_mps =
       0.0;  ///< `min_airspeed`: below it the aircraft is not flying; set by the caller from the subject
-  double min_input_rad = 0.01;  ///< `min_input`: surface activity that counts as excitation, at least (0.6 deg)
+  /// `min_input`: surface activity that counts as excitation, at least. Nothing: 0.01 rad, or where a flight is gentler
+  /// half of what its most active twentieth exceeds, down to 0.05 deg.
+  std::optional<double> min_input_rad = {};
   double ambient_factor = 2.0;  ///< `ambient_factor`: ... and at least this many times the calmest fifth of the flight
-  double min_rate_radps = 0.035;       ///< `min_rate`: body rate activity that must answer (2 deg/s)
+  /// `min_rate`: body rate activity that must answer. Nothing: 2 deg/s, or less likewise, down to 0.1 deg/s.
+  std::optional<double> min_rate_radps = {};
   std::vector<TimeSpan> longitudinal;  ///< `longitudinal = [10, 60, 80, 95]`: begin and end of each, given by the user
   std::vector<TimeSpan> lateral;       ///< `lateral`
 
@@ -42,6 +46,7 @@ struct SegmentSignals {
 struct AxisSegments : recording::Segments {
   Axis axis = Axis::kLongitudinal;
   double input_threshold_rad = 0.0;  ///< what was applied after the ambient activity was known
+  double rate_threshold_radps = 0.0;
   double ambient_input_rad = 0.0;
   [[nodiscard]] double excited_s() const { return recording::total_s(excited); }
 };
