@@ -170,19 +170,20 @@ void write_identification(const StudyRun& run, OutputFolder& folder, const Fligh
   report::AircraftReportContext context{.program = program_name()};
   context.command = run.command;
   const std::size_t count = analysis.flights.size();
-  std::string page, coefficients;  // the large texts
+  std::string page, coefficients, validation;  // the large texts
   std::vector<std::string> flights(count);
-  numerics::parallel_for(2 + count, run.options().threads, [&](std::size_t k) {
+  numerics::parallel_for(3 + count, run.options().threads, [&](std::size_t k) {
     if (k == 0)
       page = report::to_html(report::identification_report(study, analysis, context));
     else if (k == 1)
       coefficients = io::to_csv(coefficient_recording(analysis));
+    else if (k == 2 + count)
+      validation = io::to_csv(validation_recording(analysis.validation));
     else
       flights[k - 2] = io::to_csv(thinned(analysis.flights[k - 2].reconstruction.smoothed, kFlightCsvRate_Hz));
   });
   folder.write("coefficients.csv", coefficients);
-  if (analysis.validation.available())
-    folder.write("validation.csv", io::to_csv(validation_recording(analysis.validation)));
+  if (analysis.validation.available()) folder.write("validation.csv", validation);
   write_open_loop(folder, analysis.open_loop, Frame::kFrd);
   folder.write("report.html", page);
   for (std::size_t k = 0; k < count; ++k) {

@@ -130,11 +130,12 @@ std::vector<FlightStudy> read_flights(const Study& study, Progress& progress) {
       segments.fail(key, "gives times of one recording, but there are several: write it in the [[data.run]] of each");
   }
   progress.stage("reading the recording");
-  const std::vector<recording::StudyRecording> runs = recording::read_study_recordings(data);
+  const std::vector<recording::StudyRecording> runs = recording::read_study_recordings(data, progress.threads());
   const SurfaceThrows throws = throws_of(options.subject, root.table("subject"));
   for (const recording::StudyRecording& run : runs) flights.push_back(recorded(run, data, options, throws));
   root.finish();
-  return flights.size() == 1 ? flights : alike(std::move(flights));
+  if (flights.size() > 1) return alike(std::move(flights));
+  return flights;
 }
 
 FlightStudy read_study(const Study& study, Progress& progress) {

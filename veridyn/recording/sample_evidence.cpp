@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/numerics/parallel.hpp"
 #include "veridyn/numerics/resample.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -281,25 +283,31 @@ std::optional<Flaw> has_spikes(const Sampled& sampled, std::span<const TimeSpan>
 }  // namespace
 
 std::vector<Evidence> sample_evidence(const Recording& recording, std::span<const SampledChannel> channels,
-                                      std::span<const TimeSpan> spans) {
-  std::vector<Sampled> all;
-  for (const SampledChannel& which : channels) {
-    const Channel* channel = recording.find(which.channel);
-    if (channel == nullptr) continue;
-    Sampled sampled{
-        .which = &which, .channel = channel, .rate_Hz = channel->rate_Hz(), .runs = runs_of(*channel, spans)};
+                                      std::span<const TimeSpan> spans, int threads) {
+  std::vector<Sampled> found(channels.size());
+  numerics::parallel_for(channels.size(), threads, [&](std::size_t i) {
+    const Channel* channel = recording.find(channels[i].channel);
+    if (channel == nullptr) return;
+    Sampled& sampled = found[i];
+    sampled = {
+        .which = &channels[i], .channel = channel, .rate_Hz = channel->rate_Hz(), .runs = runs_of(*channel, spans)};
     for (const Run& run : sampled.runs) sampled.samples += run.samples;
-    if (sampled.samples < kFewestSamples) continue;
-    sampled.typical = typical_length(sampled.runs);
-    all.push_back(std::move(sampled));
-  }
+    if (sampled.samples >= kFewestSamples) sampled.typical = typical_length(sampled.runs);
+  });
+  std::erase_if(found, [](const Sampled& sampled) { return sampled.samples < kFewestSamples; });
+  const std::vector<Sampled>& all = found;
+  std::vector<std::array<std::optional<Flaw>, 5>> flaws(all.size());
+  numerics::parallel_for(all.size(), threads, [&](std::size_t i) {
+    const Sampled& sampled = all[i];
+    flaws[i] = {stands_still(sampled, all), is_held(sampled), is_clipped(sampled), is_coarse(sampled),
+                has_spikes(sampled, spans)};
+  });
   std::vector<Evidence> rows;
-  for (const Sampled& sampled : all) {
-    for (const std::optional<Flaw>& flaw : {stands_still(sampled, all), is_held(sampled), is_clipped(sampled),
-                                            is_coarse(sampled), has_spikes(sampled, spans)}) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (const std::optional<Flaw>& flaw : flaws[i]) {
       if (!flaw) continue;
       rows.push_back({.name = flaw->name,
-                      .about = sampled.which->about,
+                      .about = all[i].which->about,
                       .outcome = flaw->outcome,
                       .value = flaw->value,
                       .limit = flaw->limit,

@@ -27,9 +27,9 @@ struct SampledChannel {
 /// What is wrong with the samples themselves inside `spans`, one row for each that is: a value that stands still while
 /// the sensor is moved, one value held over several stamps (one measurement, not many), a reading that sits at the end
 /// of its range, steps so coarse that little of the signal is left, single samples far from both neighbours. One row
-/// "samples" where nothing is.
+/// "samples" where nothing is. Channels are looked at side by side on `threads` threads, 0: as many as the machine has.
 [[nodiscard]] std::vector<estimation::Evidence> sample_evidence(const Recording& recording,
                                                                 std::span<const SampledChannel> channels,
-                                                                std::span<const TimeSpan> spans);
+                                                                std::span<const TimeSpan> spans, int threads = 1);
 
 }  // namespace veridyn::recording

@@ -146,8 +146,10 @@ io::ReadOptions read_options(const std::filesystem::path& path, const StudyTable
 }
 
 /// One file, read as these say.
-Recording read_file(const std::filesystem::path& path, const StudyTable& own, const StudyTable& shared) {
-  return io::read_recording(path, read_options(path, own, shared));
+Recording read_file(const std::filesystem::path& path, const StudyTable& own, const StudyTable& shared, int threads) {
+  io::ReadOptions options = read_options(path, own, shared);
+  options.csv.threads = threads;
+  return io::read_recording(path, options);
 }
 
 /// Reads the keys of one recording, or of all, without opening a file.
@@ -172,7 +174,7 @@ void check_recording_keys(const StudyTable& data, std::span<const StandardChanne
 }
 
 /// The recording that `file` or `files` of a table name, with the keys of `shared` that the table lacks.
-Recording read_one(const StudyTable& data, const StudyTable& shared) {
+Recording read_one(const StudyTable& data, const StudyTable& shared, int threads) {
   if (data.has("file") == data.has("files")) {
     data.fail(data.has("file") ? "files" : "file",
               "is missing: give `file`, or `files` for the tables of one flight (not both)");
@@ -185,11 +187,10 @@ Recording read_one(const StudyTable& data, const StudyTable& shared) {
   const std::string prefix = io::log_prefix(paths);
   whole.source = paths.size() == 1 ? paths.front().string() : fmt::format("{}", fmt::join(names, ", "));
   for (const std::filesystem::path& path : paths) {
-    const Recording part = read_file(path, data, shared);
+    Recording part = read_file(path, data, shared, threads);
     if (paths.size() == 1) {
-      const std::string source = whole.source;
-      whole = part;
-      whole.source = source;
+      part.source = whole.source;
+      whole = std::move(part);
     } else {
       merge(whole, part, io::table_name(path, prefix));
     }
@@ -276,10 +277,10 @@ io::ReadOptions read_study_options(const StudyTable& data, const std::filesystem
 }
 
 Recording read_study_file(const StudyTable& data, const std::filesystem::path& path) {
-  return read_file(path, data, data);
+  return read_file(path, data, data, 1);
 }
 
-Recording read_study_data(const StudyTable& data) { return read_one(data, data); }
+Recording read_study_data(const StudyTable& data, int threads) { return read_one(data, data, threads); }
 
 void check_study_data(const StudyTable& data, std::span<const StandardChannel> standard) {
   check_recording_keys(data, standard);
@@ -289,10 +290,10 @@ void check_study_data(const StudyTable& data, std::span<const StandardChannel> s
   }
 }
 
-std::vector<StudyRecording> read_study_recordings(const StudyTable& data) {
+std::vector<StudyRecording> read_study_recordings(const StudyTable& data, int threads) {
   if (!names_runs(data)) {
     StudyRecording only;
-    only.recording = read_study_data(data);
+    only.recording = read_study_data(data, threads);
     only.files = data.files(data.has("file") ? "file" : "files");
     std::vector<StudyRecording> one;
     one.push_back(std::move(only));
@@ -307,9 +308,9 @@ std::vector<StudyRecording> read_study_recordings(const StudyTable& data) {
   distinguish(runs, data);
   for (StudyRecording& run : runs) {
     if (run.own.has("file") || run.own.has("files")) {
-      run.recording = read_one(run.own, data);
+      run.recording = read_one(run.own, data, threads);
     } else {
-      run.recording = without_missing(read_study_file(data, run.files.front()));
+      run.recording = without_missing(read_file(run.files.front(), data, data, threads));
       run.recording.source = run.files.front().string();
     }
   }

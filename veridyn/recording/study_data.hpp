@@ -30,8 +30,9 @@ namespace veridyn::recording {
 /// With several files the channels of each carry its name as a prefix, `IMU.AccX`; the instance that ulog2csv appends
 /// is dropped, so that `vehicle_attitude_0.csv` gives `vehicle_attitude.q[0]` as the log itself would. Keys of other
 /// modules in `[data]` are left for them.
+/// `threads`: io::TableOptions.
 /// @throws InputError for unreadable files, or a part of the recording that holds nothing.
-[[nodiscard]] Recording read_study_data(const StudyTable& data);
+[[nodiscard]] Recording read_study_data(const StudyTable& data, int threads = 1);
 
 /// One of the recordings of a study, with the table that says what is its own.
 struct StudyRecording {
@@ -55,7 +56,7 @@ struct StudyRecording {
 /// in the order `runs`, `[[data.run]]`, `holdout_runs`.
 /// @throws InputError as `read_study_data`, naming the file; for a recording that is named twice, and where no
 /// recording is left to identify from
-[[nodiscard]] std::vector<StudyRecording> read_study_recordings(const StudyTable& data);
+[[nodiscard]] std::vector<StudyRecording> read_study_recordings(const StudyTable& data, int threads = 1);
 
 /// Whether `[data]` names recordings by `runs`, `holdout_runs` or `[[data.run]]`.
 [[nodiscard]] bool names_runs(const StudyTable& data);

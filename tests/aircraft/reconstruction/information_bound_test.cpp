@@ -113,7 +113,7 @@ TEST(InformationBound, IsWhatALongLinearSimulationAttains) {
   double filter_square = 0.0, smoother_square = 0.0;
   const GustReplay start{.model = &model, .z = &z, .H = H, .r = kSigma * kSigma, .filter = {{}, Pi}};
   estimation::smooth_in_blocks<Gust>(
-      start, 4096, 2,
+      start, 4096, 1,
       [&](const GustReplay& run) {
         filter_square += std::pow(H.dot(run.filter.state().x) - truth[run.k - 1], 2);
         return true;

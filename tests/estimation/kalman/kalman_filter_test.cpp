@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <atomic>
 #include <cmath>
 #include <vector>
 
@@ -184,7 +185,7 @@ TEST(Smoother, EqualsTheBatchSolutionOfAllData) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const Problem p = make_problem(seed);
     const Batch all = batch(p, p.dt.size());
-    std::size_t emitted = 0;
+    std::atomic<std::size_t> emitted = 0;
     smooth_in_blocks<Oscillator>(
         start(p), 7, 2, [](const Replay&) { return true; },
         [&](std::size_t k, const Oscillator::State<double>& x, const Eigen::Matrix<double, 5, 5>& P) {
@@ -248,7 +249,7 @@ TEST(Smoother, IsTheSameForAnyLengthOfBlockAndNumberOfThreads) {
 
 TEST(Smoother, SmoothsWhatWasDoneWhenTheForwardPassIsStopped) {
   const Problem p = make_problem(4);
-  std::size_t marks = 0;
+  std::atomic<std::size_t> marks = 0;
   const Replay end = smooth_in_blocks<Oscillator>(
       start(p), 4, 2, [](const Replay& run) { return run.next < 10; },
       [&](std::size_t, const Oscillator::State<double>&, const auto&) { ++marks; });

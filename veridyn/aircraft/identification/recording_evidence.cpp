@@ -100,7 +100,7 @@ std::vector<FlightEvidence> range_rows(const Recording& recording, const Segment
   return rows;
 }
 
-std::vector<FlightEvidence> sample_rows(const Recording& recording, const Segments& segments) {
+std::vector<FlightEvidence> sample_rows(const Recording& recording, const Segments& segments, int threads) {
   static const std::vector<recording::SampledChannel> kChannels{{"accel_x", "accelerometer"},
                                                                 {"accel_y", "accelerometer"},
                                                                 {"accel_z", "accelerometer"},
@@ -121,7 +121,7 @@ std::vector<FlightEvidence> sample_rows(const Recording& recording, const Segmen
                                                                 {"aileron", "aileron", recording::Rest::kLongOnly},
                                                                 {"rudder", "rudder", recording::Rest::kLongOnly}};
   std::vector<FlightEvidence> rows;
-  for (Evidence& row : recording::sample_evidence(recording, kChannels, segments.airborne)) {
+  for (Evidence& row : recording::sample_evidence(recording, kChannels, segments.airborne, threads)) {
     const bool alpha = row.about == "alpha", beta = row.about == "beta";
     rows.push_back({std::move(row), alpha ? by_alpha() : beta ? by_beta() : std::vector<Coefficient>{}});
   }
@@ -301,20 +301,20 @@ std::vector<FlightEvidence> recording_evidence(const Recording& recording, const
                                                const ReconstructOptions& options, const Segments& segments,
                                                std::span<const DelayReport> delays, int threads) {
   // What takes time, side by side.
-  const std::array<std::function<std::vector<FlightEvidence>()>, 3> checks{
-      [&] { return sample_rows(recording, segments); }, [&] { return inertial_rows(recording, segments); },
+  std::vector<FlightEvidence> rows = sample_rows(recording, segments, threads);
+  const std::array<std::function<std::vector<FlightEvidence>()>, 2> checks{
+      [&] { return inertial_rows(recording, segments); },
       [&] { return air_data_evidence(recording, reconstruction, options.airspeed_is_true, segments); }};
-  std::array<std::vector<FlightEvidence>, 3> found;
+  std::array<std::vector<FlightEvidence>, 2> found;
   numerics::parallel_for(checks.size(), threads, [&](std::size_t i) { found[i] = checks[i](); });
 
-  std::vector<FlightEvidence> rows = std::move(found[0]);
   const auto add = [&](std::vector<FlightEvidence> more) {
     for (FlightEvidence& row : more) rows.push_back(std::move(row));
   };
-  add(std::move(found[1]));
+  add(std::move(found[0]));
   add(delay_rows(delays));
   add(together_rows(delays));
-  add(std::move(found[2]));
+  add(std::move(found[1]));
   add(missing_sensor_evidence(recording, reconstruction, segments));
   add(range_rows(recording, segments));
   if (std::optional<FlightEvidence> length = length_row(reconstruction, segments)) rows.push_back(std::move(*length));

@@ -55,6 +55,7 @@ class FilterEngine {
   /// An estimate of the forward pass at an output stamp; false stops there.
   using OnFiltered =
       std::function<bool(std::size_t output, double time, const AirDataState<double>& x, const CovarianceView& P)>;
+  /// Called for each stamp once, with more than one thread in no order and by two of them at a time.
   using OnSmoothed = std::function<void(std::size_t output, const AirDataState<double>& x, const CovarianceView& P)>;
   /// A sample of the forward pass; empty: none is wanted.
   using OnInnovation = std::function<void(double time, const SensorInnovation& innovation)>;

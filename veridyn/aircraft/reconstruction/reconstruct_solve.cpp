@@ -1,9 +1,11 @@
 #include "veridyn/aircraft/reconstruction/reconstruct_solve.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <initializer_list>
 #include <string_view>
+#include <thread>
 
 #include "veridyn/aircraft/reconstruction/air_data_check.hpp"
 #include "veridyn/aircraft/reconstruction/air_data_likelihood.hpp"
@@ -55,13 +57,17 @@ Solution run_pass(const FilterEngine& engine, const SolveTask& task, const RunSe
 
   constexpr std::size_t kReport = 4096;
   const double total = static_cast<double>(2 * stamps.size());
-  std::size_t done = 0;
+  std::atomic<std::size_t> done = 0;
+  std::size_t next_report = kReport;
   bool going = true;
   std::size_t cursor = 0;
   double longest = 0.0;
+  const std::thread::id caller = std::this_thread::get_id();
   const auto report = [&] {
-    return ++done % kReport != 0 ||
-           share.progress->update(share.from + (share.to - share.from) * static_cast<double>(done) / total);
+    const std::size_t now = ++done;
+    if (std::this_thread::get_id() != caller || now < next_report) return true;
+    next_report = now + kReport;
+    return share.progress->update(share.from + (share.to - share.from) * static_cast<double>(now) / total);
   };
   const auto filtered = [&](std::size_t output, double time, const AirDataState<double>& x, const CovarianceView& P) {
     if (solution.filtered) solution.filtered->write(output, setting.motion, x, P, s.density_at(time, cursor));
@@ -70,7 +76,7 @@ Solution run_pass(const FilterEngine& engine, const SolveTask& task, const RunSe
     return going;
   };
   const auto smoothed = [&](std::size_t output, const AirDataState<double>& x, const CovarianceView& P) {
-    solution.smoothed->write(output, setting.motion, x, P, s.density_at(stamps[output], cursor));
+    solution.smoothed->write(output, setting.motion, x, P, s.density_at(stamps[output]));
     // Work that is stopped here ends what it has begun: it is a matter of seconds.
     static_cast<void>(report());
   };

@@ -191,6 +191,12 @@ double FlightStreams::density_at(double time, std::size_t& cursor) const {
   return interpolate(density_t, density, time, cursor);
 }
 
+double FlightStreams::density_at(double time) const {
+  const auto after = std::upper_bound(density_t.begin(), density_t.end(), time) - density_t.begin();
+  auto cursor = static_cast<std::size_t>(std::max<std::ptrdiff_t>(after, 1) - 1);
+  return density_at(time, cursor);
+}
+
 FlightStreams load_streams(const Recording& recording, const ReconstructOptions& o) {
   FlightStreams s;
   s.gyro = vector(recording, "gyro");

@@ -72,6 +72,7 @@ struct FlightStreams {
   [[nodiscard]] bool has_ground_velocity() const { return has(kVelNorth) && has(kVelEast); }
 
   [[nodiscard]] double density_at(double time, std::size_t& cursor) const;
+  [[nodiscard]] double density_at(double time) const;
 };
 
 /// Channels that the recording lacks have empty streams.

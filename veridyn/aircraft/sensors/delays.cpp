@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <utility>
 
 #include "veridyn/aircraft/model/atmosphere.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/numerics/parallel.hpp"
 #include "veridyn/numerics/rotation.hpp"
 
 namespace veridyn::aircraft {
@@ -55,6 +57,24 @@ class Alignment {
  public:
   Alignment(Recording& recording, const DelayAlignment& options, const BandLimited& band, Progress& progress)
       : recording_(recording), options_(options), band_(band), progress_(progress) {}
+
+  /// Finds side by side what most groups are compared with.
+  void prepare(int threads) {
+    std::vector<std::function<void()>> jobs;
+    const auto plan = [&](auto& found, const char* name, const auto& find) {
+      if (!recording_.has(name)) return;
+      auto& kept_there = found[name];
+      jobs.emplace_back([&kept_there, &channel = at(name), find] { kept_there = find(channel); });
+    };
+    for (const char* name : {"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z", "airspeed", "alpha", "beta",
+                             "elevator", "aileron", "rudder"})
+      plan(smoothed_, name, [this](const Channel& channel) { return band_.smooth(channel); });
+    for (const char* name : {"roll", "pitch", "yaw"})
+      plan(smoothed_angles_, name, [this](const Channel& channel) { return band_.smooth_angle(channel); });
+    for (const char* name : {"gyro_x", "gyro_y", "gyro_z", "accel_y", "accel_z"})
+      plan(noise_, name, [this](const Channel& channel) { return band_.noise_variance(channel); });
+    numerics::parallel_for(jobs.size(), threads, [&](std::size_t i) { jobs[i](); });
+  }
 
   /// One group; nothing where the recording lacks what it is compared with.
   std::optional<DelayReport> align(const DelayGroup& group) {
@@ -367,7 +387,10 @@ AlignedRecording align_delays(MappedRecording mapped, const DelayAlignment& opti
   const std::optional<BandLimited> band =
       clock ? BandLimited::around(recording.at("gyro_x"), options.band_Hz) : std::nullopt;
   std::optional<Alignment> alignment;
-  if (band && options.automatic) alignment.emplace(recording, options, *band, progress);
+  if (band && options.automatic) {
+    alignment.emplace(recording, options, *band, progress);
+    if (progress.threads() != 1) alignment->prepare(progress.threads());
+  }
   double done = 0.0;
   for (const DelayGroup& group : groups()) {
     if (!progress.update(done / static_cast<double>(groups().size()))) break;

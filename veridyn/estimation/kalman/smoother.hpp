@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstddef>
-#include <functional>
 #include <future>
 #include <utility>
 #include <vector>
@@ -31,14 +31,19 @@ class FixedIntervalSmoother {
   using Vector = typename Tape::Vector;
   using Covariance = typename Tape::Covariance;
 
-  /// Goes backwards through `tape`, which must be the stretch just before the one swept last, and calls
-  /// `emit(number, x_smoothed, P_smoothed)` at each mark, latest first.
-  template <class Emit>
-  void sweep(const Tape& tape, Emit&& emit) {
+  /// The adjoint and its covariance at a mark.
+  struct Adjoint {
+    Vector lambda;
+    Covariance Lambda;
+  };
+
+  /// Goes backwards through `tape`, which must be the stretch just before the one swept last; `at_marks` then holds
+  /// what its marks lack to be smoothed, latest first.
+  void sweep(const Tape& tape, std::vector<Adjoint>& at_marks) {
     constexpr int D = Model::kDynamic, R = Model::kStates - Model::kDynamic;
+    at_marks.clear();
     auto F = tape.transitions_.rbegin();
     auto update = tape.updates_.rbegin();
-    auto mark = tape.marks_.rbegin();
     for (auto kind = tape.order_.rbegin(); kind != tape.order_.rend(); ++kind) {
       switch (*kind) {
         case Tape::Kind::kTransition: {
@@ -64,22 +69,28 @@ class FixedIntervalSmoother {
           ++update;
           break;
         }
-        case Tape::Kind::kMark: {
-          const Covariance P = smoothed_covariance(mark->P);
-          const Vector correction = -mark->P.lazyProduct(lambda_);
-          emit(mark->number, Model::template retract<double>(mark->x, correction), P);
-          ++mark;
+        case Tape::Kind::kMark:
+          at_marks.push_back({lambda_, Lambda_});
           break;
-        }
       }
     }
   }
 
+  /// Calls `emit(number, x_smoothed, P_smoothed)` for the latest mark but `back` of a tape that was swept.
+  template <class Emit>
+  static void smooth_mark(const Tape& tape, const std::vector<Adjoint>& at_marks, std::size_t back, Emit&& emit) {
+    const auto& mark = tape.marks_[tape.marks_.size() - 1 - back];
+    const Adjoint& adjoint = at_marks[back];
+    const Covariance P = smoothed_covariance(mark.P, adjoint.Lambda);
+    const Vector correction = -mark.P.lazyProduct(adjoint.lambda);
+    emit(mark.number, Model::template retract<double>(mark.x, correction), P);
+  }
+
  private:
   /// P - P Lambda P: of what is symmetric the lower triangle.
-  [[nodiscard]] Covariance smoothed_covariance(const Covariance& P) const {
+  [[nodiscard]] static Covariance smoothed_covariance(const Covariance& P, const Covariance& Lambda) {
     constexpr int N = Model::kStates;
-    const Covariance PL = P.lazyProduct(Lambda_);
+    const Covariance PL = P.lazyProduct(Lambda);
     Covariance smoothed = P;
     [&]<int... Pair>(std::integer_sequence<int, Pair...>) { (subtract_below<2 * Pair>(PL, P, smoothed), ...); }
     (std::make_integer_sequence<int, (N + 1) / 2>());
@@ -133,7 +144,7 @@ class FixedIntervalSmoother {
 };
 
 /// Smooths a long run in bounded memory: goes forward once keeping a copy of the run every `block` steps, then repeats
-/// the blocks from the last to the first with a tape. Twice the filter's time, but memory only for one block and
+/// the blocks from the last to the first with a tape. Twice the filter's time, but memory only for three blocks and
 /// steps / block copies.
 ///
 /// `Run` is copyable; `bool advance(SmootherTape<Model>* tape)` processes the next step and returns false, having done
@@ -141,10 +152,12 @@ class FixedIntervalSmoother {
 /// forward pass and may return false to stop there (the steps done so far are still smoothed). Returns the run at the
 /// end of the forward pass.
 ///
-/// With more than one thread (0: as many as the machine has) the next block is repeated while one is swept: a second
-/// tape, and not a bit different. All is called on the calling thread but `advance` of the repeated copies.
+/// `emit(number, x_smoothed, P_smoothed)` is called once for each mark. With one thread that is from the latest to the
+/// first; with more (0: as many as the machine has) one block is repeated while another is swept, and those who are
+/// done with that emit a third: in no order, and on two threads at a time. Not a bit is different.
 template <SystemModel Model, class Run, class OnForward, class Emit>
 Run smooth_in_blocks(Run run, std::size_t block, int threads, OnForward&& on_forward, Emit&& emit) {
+  using Smoother = FixedIntervalSmoother<Model>;
   std::vector<std::pair<Run, std::size_t>> starts;
   bool going = true;
   while (going) {
@@ -159,28 +172,50 @@ Run smooth_in_blocks(Run run, std::size_t block, int threads, OnForward&& on_for
     }
     if (start.second > 0) starts.push_back(std::move(start));
   }
-  const auto repeat = [&starts](SmootherTape<Model>* tape) {
-    tape->clear();
+
+  struct Block {
+    SmootherTape<Model> tape;
+    std::vector<typename Smoother::Adjoint> at_marks;
+    std::atomic<std::size_t> emitted = 0;
+  };
+  std::array<Block, 3> blocks;
+  Smoother smoother;
+  const auto repeat = [&starts](Block& b) {
+    b.tape.clear();
     auto& [again, steps] = starts.back();
-    for (std::size_t i = 0; i < steps; ++i) static_cast<void>(again.advance(tape));
+    for (std::size_t i = 0; i < steps; ++i) static_cast<void>(again.advance(&b.tape));
     starts.pop_back();
   };
-  FixedIntervalSmoother<Model> smoother;
-  std::array<SmootherTape<Model>, 2> tapes;
-  SmootherTape<Model>*tape = &tapes[0], *next = &tapes[1];
-  bool more = !starts.empty();
-  if (more) repeat(tape);
-  while (more) {
-    more = !starts.empty();
-    std::future<void> repeating;
-    if (more && threads != 1) repeating = std::async(std::launch::async, repeat, next);
-    smoother.sweep(*tape, emit);
-    if (repeating.valid()) {
-      repeating.get();
-    } else if (more) {
-      repeat(next);
+  const auto sweep = [&smoother](Block& b) {
+    smoother.sweep(b.tape, b.at_marks);
+    b.emitted = 0;
+  };
+  const auto emit_some = [&emit](Block& b) {
+    constexpr std::size_t kAtOnce = 16;
+    const std::size_t count = b.at_marks.size();
+    for (std::size_t from = b.emitted.fetch_add(kAtOnce); from < count; from = b.emitted.fetch_add(kAtOnce))
+      for (std::size_t i = from; i < std::min(from + kAtOnce, count); ++i)
+        Smoother::smooth_mark(b.tape, b.at_marks, i, emit);
+  };
+  // In round k the k-th block from the end is repeated, the one before it in this order swept, and that before emitted.
+  const std::size_t count = starts.size();
+  for (std::size_t k = 0; count > 0 && k < count + 2; ++k) {
+    Block& repeated = blocks[k % 3];
+    Block* const swept = k >= 1 && k <= count ? &blocks[(k - 1) % 3] : nullptr;
+    Block* const emitted = k >= 2 ? &blocks[(k - 2) % 3] : nullptr;
+    const auto beside = [&, k] {
+      if (k < count) repeat(repeated);
+      if (emitted != nullptr) emit_some(*emitted);
+    };
+    std::future<void> helper;
+    if (threads != 1 && k > 0) helper = std::async(std::launch::async, beside);
+    if (swept != nullptr) sweep(*swept);
+    if (emitted != nullptr) emit_some(*emitted);
+    if (helper.valid()) {
+      helper.get();
+    } else {
+      beside();
     }
-    std::swap(tape, next);
   }
   return run;
 }

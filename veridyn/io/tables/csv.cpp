@@ -15,6 +15,7 @@
 #include "veridyn/io/tables/csv_cells.hpp"
 #include "veridyn/io/tables/csv_header.hpp"
 #include "veridyn/io/tables/date_stamp.hpp"
+#include "veridyn/io/tables/plain_rows.hpp"
 #include "veridyn/io/tables/time_column.hpp"
 
 namespace veridyn::io {
@@ -275,7 +276,24 @@ class CsvParser {
     column.texts.push_back(cell);
   }
 
+  /// All rows, where there are many and none is out of the ordinary.
+  bool read_rows_in_parts() {
+    if (time_.texts) return false;
+    internal::PlainColumns columns{.count = headers_.size(), .time = {}, .time_scale = time_.scale};
+    if (time_.column != TimeChoice::kNone) columns.time = time_.column;
+    std::optional<std::vector<std::vector<double>>> read =
+        internal::read_plain_rows(rows_, style_, columns, options_.threads);
+    if (!read) return false;
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      columns_[i].kind = Growing::Kind::kNumber;
+      columns_[i].numbers = std::move((*read)[i]);
+    }
+    row_count_ = columns_.front().numbers.size();
+    return true;
+  }
+
   void read_rows() {
+    if (read_rows_in_parts()) return;
     CellReader reader(rows_, style_);
     double last_time = -INFINITY;
     const std::size_t count = headers_.size();

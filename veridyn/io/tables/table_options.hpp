@@ -19,6 +19,7 @@ struct TableOptions {
   /// Which part of a file of several, from 1: of a table whose clock restarts (0: the longest), of any log with pauses
   /// (0: all).
   std::size_t part = 0;
+  int threads = 1;  ///< that read a large CSV file; 0: as many as the machine has. What is read does not depend on it
 };
 
 }  // namespace veridyn::io
