@@ -62,13 +62,21 @@ asan: setup ## tests of every module under the address and undefined-behaviour s
 	cmake --build build/asan -j $(JOBS) --target $(ASAN_MODULES:%=veridyn_%_tests)
 	ctest --test-dir build/asan --output-on-failure -j $(JOBS) -LE 'soak|long' -L '^($(subst $(space),|,$(ASAN_MODULES)))$$'
 
-# What runs in threads beside each other. The sanitizer's shadow memory wants addresses that are not shuffled.
-TSAN_TESTS ?= TripleBuffer.*:LiveLoop*:RunningLoop*:LivePage*:LiveRecorder*:*Teleoperation*:*PseudoTerminal*
+# What runs in threads beside each other, by module. The sanitizer's shadow memory wants addresses that are not shuffled.
+TSAN_MODULES ?= live numerics estimation io recording aircraft apps
+TSAN_live := TripleBuffer.*:LiveLoop*:RunningLoop*:LivePage*:LiveRecorder*:*Teleoperation*:*PseudoTerminal*
+TSAN_numerics := ParallelFor*:BlockStore*:Heartbeat*:ValueLog*
+TSAN_estimation := Smoother*:OpenLoop*:BatchEvaluator*:*NumberOfThreads*:*UsesTheThreads*
+TSAN_io := PlainRows*
+TSAN_recording := SampleEvidence*:StudyData*
+TSAN_aircraft := OpenLoop.IsTheSame*:BatchExperiment.IsTheSame*:FlightSensitivity.IsTheSame*:Reconstruct.GivesTheSame*:ModelFreeEngine*:RecordingEvidence.OfAClean*:AircraftStudy.IdentifiesWhat*
+TSAN_apps := Program.GivesTheSameBytes*:Program.IdentifiesARecordingWrittenByItself:VehicleProgram.SameSeed*
 
-tsan: setup ## tests of the live module's threads under the thread sanitizer
+tsan: setup ## tests of what runs in threads under the thread sanitizer; TSAN_MODULES="live" for one module
 	cmake --preset tsan --log-level=WARNING
-	cmake --build build/tsan -j $(JOBS) --target veridyn_live_tests
-	TSAN_OPTIONS=halt_on_error=1 setarch $$(uname -m) -R build/tsan/bin/veridyn_live_tests --gtest_filter='$(TSAN_TESTS):-*Soak*:*AllocatesNothing*'
+	cmake --build build/tsan -j $(JOBS) --target $(TSAN_MODULES:%=veridyn_%_tests)
+	@set -e; $(foreach module,$(TSAN_MODULES),echo "tsan: $(module)"; TSAN_OPTIONS=halt_on_error=1 setarch $$(uname -m) -R \
+	  build/tsan/bin/veridyn_$(module)_tests --gtest_brief=1 --gtest_filter='$(TSAN_$(module)):-*Soak*:*AllocatesNothing*';)
 
 bench: setup ## benchmarks; results in build/bench/*.json
 	cmake --preset bench --log-level=WARNING
