@@ -110,7 +110,8 @@ TEST(TaskAdvice, IsForTheModelsTasksAndWithheldWhereTheModelIsWrong) {
   EXPECT_TRUE(a.estimate.next_measurements.empty());
 }
 
-/// 18 unknowns, three or four tasks: the widest interval is nearly the prior's, and sensitivities change within it.
+/// 18 unknowns, three or four tasks: the widest interval is nearly the prior's, and sensitivities change within it. (A
+/// search that ends in another minimum than the estimate's would find anything.)
 TEST(TaskAdviceSoak, OfManyPersons) {
   std::vector<double> few, all;
   for (int seed = 1; seed <= 10; ++seed) {
@@ -126,8 +127,8 @@ TEST(TaskAdviceSoak, OfManyPersons) {
     std::fflush(stdout);
   }
   for (const double ratio : few) EXPECT_NEAR(ratio, 1.0, 0.2);
-  // Nine of ten were, one was 1.27.
-  EXPECT_GE(std::count_if(all.begin(), all.end(), [](double ratio) { return std::abs(ratio - 1.0) < 0.25; }), 8);
+  // All ten were, from 0.99 to 1.23.
+  EXPECT_GE(std::count_if(all.begin(), all.end(), [](double ratio) { return std::abs(ratio - 1.0) < 0.25; }), 9);
 }
 
 }  // namespace

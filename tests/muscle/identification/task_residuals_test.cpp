@@ -25,5 +25,10 @@ TEST(TaskResiduals, ShareIsOfTheLargestRange) {
   EXPECT_NEAR(share_of_motion({e, e}, {z, still}), 0.05, 1e-15);
 }
 
+TEST(TaskResiduals, SquaresAreInUnitsOfEachOutput) {
+  const estimation::RowMatrix e = (estimation::RowMatrix(2, 2) << 1.0, 3.0, kNaN, 6.0).finished();
+  EXPECT_DOUBLE_EQ(squares_of({e, e}, Eigen::Vector2d(0.5, 3.0)), 2.0 * (4.0 + 1.0 + 4.0));
+}
+
 }  // namespace
 }  // namespace veridyn::muscle

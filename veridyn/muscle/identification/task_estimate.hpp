@@ -85,9 +85,9 @@ inline constexpr double kIntegrationShare = 3e-6;
 [[nodiscard]] std::vector<MuscleUnknown> with_bound_priors(std::vector<MuscleUnknown> unknowns);
 
 /// Output error over all tasks at once with exact sensitivities (`estimation::output_error`), from several starts.
-/// Valleys of these fits are long and curved, so each search first fits coarsely (the noise taken for a twentieth of
-/// the residual) and the best two go on with the noise as it is. Error bars are those of the posterior: with priors,
-/// and corrected for autocorrelated residuals.
+/// Valleys of these fits are long and curved and have minima at the bounds, so each search first fits coarsely (with
+/// noise as large as the residual, then less and less), and the best two go on with the noise as it is. Error bars are
+/// those of the posterior: with priors, and corrected for autocorrelated residuals.
 /// @param measured by segment: samples x outputs, NaN where nothing was measured
 /// @param noise standard deviation by output; empty: estimated
 [[nodiscard]] TaskEstimate estimate_from_tasks(const estimation::ParametricModel& model,

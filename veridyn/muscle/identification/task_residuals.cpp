@@ -46,4 +46,14 @@ double share_of_motion(const std::vector<RowMatrix>& residuals, const std::vecto
   return largest;
 }
 
+double squares_of(const std::vector<RowMatrix>& residuals, const Eigen::VectorXd& unit) {
+  double sum = 0.0;
+  for (const RowMatrix& r : residuals) {
+    for (Eigen::Index k = 0; k < r.rows(); ++k)
+      for (Eigen::Index j = 0; j < r.cols(); ++j)
+        if (!std::isnan(r(k, j))) sum += std::pow(r(k, j) / unit(j), 2);
+  }
+  return sum;
+}
+
 }  // namespace veridyn::muscle

@@ -14,4 +14,7 @@ namespace veridyn::muscle {
 [[nodiscard]] double share_of_motion(const std::vector<estimation::RowMatrix>& residuals,
                                      const std::vector<estimation::RowMatrix>& measured);
 
+/// Sum of squares, each output in its `unit`.
+[[nodiscard]] double squares_of(const std::vector<estimation::RowMatrix>& residuals, const Eigen::VectorXd& unit);
+
 }  // namespace veridyn::muscle
