@@ -25,18 +25,21 @@ WAITING ?= 2
 
 test: setup format-check ## build and run the test suite
 	$(build_with_tests)
-	$(run_tests) -LE 'soak|long'
+	$(call run_tests,$(BUILD)) -LE 'soak|long'
 
 long: setup ## tests of accuracy and of coverage over many recordings (label long); CI runs them after `make test`
 	$(build_with_tests)
-	$(run_tests) -L long
+	$(call run_tests,$(BUILD)) -L long
 
 define build_with_tests
 	cmake --preset release -DVERIDYN_TESTS=ON --log-level=WARNING
 	cmake --build $(BUILD) -j $(JOBS)
-	@echo '{"version": {"major": 1, "minor": 0}, "local": [{"cores": [{"id": "all", "slots": $(JOBS)}], "waiting": [{"id": "all", "slots": $(WAITING)}]}]}' >$(BUILD)/test_resources.json
 endef
-run_tests = ctest --test-dir $(BUILD) --output-on-failure -j $$(($(JOBS) + $(WAITING))) --resource-spec-file test_resources.json
+# Tests of a build folder: $(call run_tests,FOLDER) and which of them.
+define run_tests
+	@echo '{"version": {"major": 1, "minor": 0}, "local": [{"cores": [{"id": "all", "slots": $(JOBS)}], "waiting": [{"id": "all", "slots": $(WAITING)}]}]}' >$(1)/test_resources.json
+	ctest --test-dir $(1) --output-on-failure -j $$(($(JOBS) + $(WAITING))) --resource-spec-file test_resources.json
+endef
 
 docs: setup ## API reference from the headers: build/docs/html/index.html
 	@node tools/docs.mjs build/docs
@@ -60,7 +63,7 @@ ASAN_MODULES ?= core numerics estimation io camera recording aircraft vehicle mu
 asan: setup ## tests of every module under the address and undefined-behaviour sanitizers; ASAN_MODULES="io" for one
 	cmake --preset asan --log-level=WARNING
 	cmake --build build/asan -j $(JOBS) --target $(ASAN_MODULES:%=veridyn_%_tests)
-	ctest --test-dir build/asan --output-on-failure -j $(JOBS) -LE 'soak|long' -L '^($(subst $(space),|,$(ASAN_MODULES)))$$'
+	$(call run_tests,build/asan) -LE 'soak|long' -L '^($(subst $(space),|,$(ASAN_MODULES)))$$'
 
 # What runs in threads beside each other, by module. The sanitizer's shadow memory wants addresses that are not shuffled.
 TSAN_MODULES ?= live numerics estimation io recording aircraft apps

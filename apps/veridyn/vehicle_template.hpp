@@ -74,6 +74,7 @@ set = "reference"                  # production-car sensors; "perfect"
 
 [segments]
 # min_speed = "3 m/s"
+# min_lateral_acceleration = "0.3 m/s^2"   # of what counts; without it a gentle drive sets it lower
 # holdout = 0.33                   # share of the excited time that identification never sees
 
 [identify]

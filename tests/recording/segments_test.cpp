@@ -21,6 +21,28 @@ std::string refusal(const std::string& toml) {
   });
 }
 
+TEST(LeastActivity, FollowsTheRecordingWhereItIsGentle) {
+  const LeastActivity least{.usual = 1.0, .least = 0.01};
+  const auto with = [](double calm, double lively, double share) {
+    std::vector<double> activity(1000, calm);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(1000.0 * share); ++i) activity[i] = lively;
+    return activity;
+  };
+  const std::vector<bool> all(1000, true);
+  EXPECT_DOUBLE_EQ(least.of(with(0.1, 5.0, 0.2), all), 1.0);
+  EXPECT_DOUBLE_EQ(least.of(with(0.02, 0.4, 0.2), all), 0.2);
+  EXPECT_DOUBLE_EQ(least.of(with(0.02, 0.4, 0.01), all), 0.04) << "one manoeuvre: by the calm parts";
+  EXPECT_DOUBLE_EQ(least.of(with(0.001, 0.4, 0.01), all), 0.01);
+  EXPECT_DOUBLE_EQ(least.of(with(0.3, 0.3, 0.0), all), 0.6) << "nothing stands out";
+  // Only what is inside counts, and what is missing does not.
+  std::vector<double> gap = with(0.02, 0.4, 0.2);
+  gap[999] = std::nan("");
+  std::vector<bool> inside(1000, false);
+  std::fill(inside.begin() + 200, inside.end(), true);
+  EXPECT_DOUBLE_EQ(least.of(gap, inside), 0.04);
+  EXPECT_DOUBLE_EQ(least.of({}, {}), 0.01);
+}
+
 TEST(Segments, StretchesAreTheLongestRunsForWhichSomethingHolds) {
   const numerics::UniformGrid grid{1.0, 0.5, 8};
   const std::vector<bool> holds{true, true, false, true, false, true, true, true};

@@ -126,6 +126,22 @@ std::vector<double> mean_square(std::span<const double> x, std::size_t half) {
   return result;
 }
 
+double quantile_inside(std::span<const double> x, const std::vector<bool>& inside, double share) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (inside[i] && std::isfinite(x[i])) values.push_back(x[i]);
+  }
+  if (values.empty()) return 0.0;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+double LeastActivity::of(std::span<const double> activity, const std::vector<bool>& inside) const {
+  const double lively = quantile_inside(activity, inside, 0.95), calm = quantile_inside(activity, inside, 0.2);
+  return std::clamp(std::max(0.5 * lively, 2.0 * calm), least, usual);
+}
+
 std::vector<TimeSpan> blocks(const TimeSpan& span, double block_s) {
   const auto count = static_cast<std::size_t>(std::max(1.0, std::round(span.duration() / block_s)));
   const double length = span.duration() / static_cast<double>(count);

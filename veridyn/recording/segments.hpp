@@ -71,6 +71,19 @@ void drop_shorter(std::vector<TimeSpan>& spans, double least_s);
 /// Mean of x^2 over a window of `half` samples to either side, at the ends over what there is of it. x must be finite.
 [[nodiscard]] std::vector<double> mean_square(std::span<const double> x, std::size_t half);
 
+/// The value that the share `share` of the finite x does not exceed, of the samples `inside`; 0 where there are none.
+[[nodiscard]] double quantile_inside(std::span<const double> x, const std::vector<bool>& inside, double share);
+
+/// From which activity on a stretch counts as excited: from `usual` on, and in a recording that is gentle throughout
+/// from less, down to `least`.
+struct LeastActivity {
+  double usual = 0.0, least = 0.0;
+
+  /// Half of what the most active twentieth of the samples `inside` exceeds, but twice what the calmest fifth does not
+  /// (noise alone excites nothing), between `least` and `usual`.
+  [[nodiscard]] double of(std::span<const double> activity, const std::vector<bool>& inside) const;
+};
+
 /// A span cut into equal blocks, as many as make their length nearest to `block_s`; at least one.
 [[nodiscard]] std::vector<TimeSpan> blocks(const TimeSpan& span, double block_s);
 

@@ -46,5 +46,24 @@ TEST(DriveSegments, LeaveGapsOutAndKeepTheHoldOutApart) {
   EXPECT_NEAR(share, 1.0 / 3.0, 0.1);
 }
 
+// Slow driving on a motorway: a tenth of a metre per second squared, and straight stretches of noise.
+TEST(DriveSegments, FollowADriveThatIsGentleThroughout) {
+  const auto bends = [](double t, double) { return (t > 30.0 && t < 50.0 ? 0.008 : 0.0005) * std::sin(2.0 * t); };
+  const Recording r = changed(recorded(120.0), "yaw_rate", bends);
+  const double speed = prepared(r)[DriveSignal::kSpeed].value.front();
+  const DriveSegments s = find_drive_segments(prepared(r), {});
+  ASSERT_FALSE(s.excited.empty());
+  EXPECT_LT(s.least_lateral_mps2, 0.008 * speed);
+  EXPECT_NEAR(s.excited.front().begin, 30.0, 2.0);
+  EXPECT_NEAR(s.excited.back().end, 50.0, 2.0);
+  EXPECT_DOUBLE_EQ(find_drive_segments(prepared(recorded(120.0)), {}).least_lateral_mps2, 0.3) << "a lively drive";
+  DriveSegmentOptions strict;
+  strict.min_lateral_mps2 = 0.3;
+  EXPECT_TRUE(find_drive_segments(prepared(r), strict).excited.empty()) << "as it was before";
+  const DriveSegments straight = find_drive_segments(
+      prepared(changed(r, "yaw_rate", [](double t, double) { return 0.004 * std::sin(7.0 * t); })), {});
+  EXPECT_TRUE(straight.excited.empty()) << "noise alone excites nothing";
+}
+
 }  // namespace
 }  // namespace veridyn::vehicle

@@ -23,17 +23,6 @@ std::vector<double> larger(std::vector<double> a, const std::vector<double>& b) 
   return a;
 }
 
-double quantile_inside(const std::vector<double>& x, const std::vector<bool>& inside, double share) {
-  std::vector<double> values;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (inside[i] && std::isfinite(x[i])) values.push_back(x[i]);
-  }
-  if (values.empty()) return 0.0;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
 }  // namespace
 
 const char* to_string(Axis axis) { return axis == Axis::kLongitudinal ? "longitudinal" : "lateral"; }
@@ -71,19 +60,9 @@ Airborne airborne(const SegmentSignals& signals, const numerics::UniformGrid& gr
   return found;
 }
 
-/// The least activity that counts where none is given: an absolute one, and less in a flight that is gentle throughout,
-/// such as that of a transport aircraft, whose manoeuvres move the elevator by tenths of a degree.
-struct LeastActivity {
-  double usual = 0.0, least = 0.0;
-
-  [[nodiscard]] double of(const std::optional<double>& given, const std::vector<double>& activity,
-                          const Airborne& flight) const {
-    constexpr double kMostActive = 0.95, kShare = 0.5;
-    return given.value_or(std::clamp(kShare * quantile_inside(activity, flight.inside, kMostActive), least, usual));
-  }
-};
-constexpr LeastActivity kLeastInput{.usual = 0.01, .least = 0.05 * kDegree};
-constexpr LeastActivity kLeastRate{.usual = 0.035, .least = 0.1 * kDegree};
+/// A transport aircraft's manoeuvres move the elevator by tenths of a degree.
+constexpr recording::LeastActivity kLeastInput{.usual = 0.01, .least = 0.05 * kDegree};
+constexpr recording::LeastActivity kLeastRate{.usual = 0.035, .least = 0.1 * kDegree};
 
 /// One axis: `input` is the activity of its surfaces, `rate` that of the body.
 AxisSegments find_axis(Axis axis, const std::vector<TimeSpan>& given, const std::vector<double>& input,
@@ -99,10 +78,10 @@ AxisSegments find_axis(Axis axis, const std::vector<TimeSpan>& given, const std:
   } else if (input.empty()) {
     found.text = fmt::format("{} segments: none, the log has no surface deflection", to_string(axis));
   } else {
-    found.ambient_input_rad = quantile_inside(input, flight.inside, 0.2);
-    found.input_threshold_rad = std::max(kLeastInput.of(options.min_input_rad, input, flight),
+    found.ambient_input_rad = recording::quantile_inside(input, flight.inside, 0.2);
+    found.input_threshold_rad = std::max(options.min_input_rad.value_or(kLeastInput.of(input, flight.inside)),
                                          options.ambient_factor * found.ambient_input_rad);
-    found.rate_threshold_radps = kLeastRate.of(options.min_rate_radps, rate, flight);
+    found.rate_threshold_radps = options.min_rate_radps.value_or(kLeastRate.of(rate, flight.inside));
     const auto excited = [&](std::size_t i) {
       return flight.inside[i] && input[i] > found.input_threshold_rad && rate[i] > found.rate_threshold_radps;
     };

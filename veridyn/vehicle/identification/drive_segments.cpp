@@ -69,16 +69,19 @@ Usable usable_samples(const DriveSignals& signals, const DriveSegmentOptions& o)
 
 /// Where there is lateral motion: rms of r u over a window.
 std::vector<TimeSpan> excited_spans(const DriveSignals& signals, const DriveSegmentOptions& o,
-                                    const std::vector<bool>& usable) {
+                                    const std::vector<bool>& usable, double& least_mps2) {
   const std::vector<double>& u = signals[DriveSignal::kSpeed].value;
   const std::vector<double>& r = signals[DriveSignal::kYawRate].value;
   std::vector<double> lateral(signals.size());
   for (std::size_t k = 0; k < lateral.size(); ++k) lateral[k] = usable[k] ? u[k] * r[k] : 0.0;
   const auto half = static_cast<std::size_t>(std::max(1.0, 0.5 * o.window_s / signals.grid.step));
   const std::vector<double> power = recording::mean_square(lateral, half);
-  const double least = o.min_lateral_mps2 * o.min_lateral_mps2;
-  std::vector<TimeSpan> found =
-      recording::stretches(signals.grid, signals.size(), [&](std::size_t k) { return usable[k] && power[k] >= least; });
+  std::vector<double> activity(power.size());
+  std::ranges::transform(power, activity.begin(), [](double p) { return std::sqrt(p); });
+  constexpr recording::LeastActivity kLeast{.usual = 0.3, .least = 0.05};
+  least_mps2 = o.min_lateral_mps2.value_or(kLeast.of(activity, usable));
+  std::vector<TimeSpan> found = recording::stretches(
+      signals.grid, signals.size(), [&](std::size_t k) { return usable[k] && activity[k] >= least_mps2; });
   drop_shorter(found, 0.0);
   return recording::merged(found, o.merge_s);
 }
@@ -128,8 +131,10 @@ recording::AssignedBlocks assign_runs(const std::vector<TimeSpan>& excited, cons
 std::string account(const DriveSegments& s, const DriveSegmentOptions& o) {
   using recording::total_s;
   if (s.excited.empty() && !s.given) {
-    return fmt::format("{:.0f} s are usable, but the lateral acceleration stays below {:g} m/s^2 (rms over {:g} s)",
-                       total_s(s.usable), o.min_lateral_mps2, o.window_s);
+    return fmt::format(
+        "{:.0f} s are usable, but the lateral acceleration stays below {:.2g} m/s^2 (rms over {:g} s; key "
+        "segments.min_lateral_acceleration)",
+        total_s(s.usable), s.least_lateral_mps2, o.window_s);
   }
   return fmt::format(
       "{:.0f} s usable, {:.0f} s of them with lateral motion; {:.0f} s to identify in {} segments, {:.0f} s to "
@@ -149,7 +154,7 @@ DriveSegmentOptions DriveSegmentOptions::read(const StudyTable& table) {
   o.max_steer_rad = table.positive_or("max_steer", "rad", o.max_steer_rad);
   if (!(o.max_steer_rad < 90.0 * kDegree))
     table.fail("max_steer", fmt::format("= {:g} deg must be less than 90 deg", o.max_steer_rad / kDegree));
-  o.min_lateral_mps2 = table.positive_or("min_lateral_acceleration", "m/s^2", o.min_lateral_mps2);
+  if (table.has("min_lateral_acceleration")) o.min_lateral_mps2 = table.positive("min_lateral_acceleration", "m/s^2");
   if (!(o.block_s >= o.min_duration_s))
     table.fail("block",
                fmt::format("= {:g} s must not be shorter than min_duration = {:g} s", o.block_s, o.min_duration_s));
@@ -165,7 +170,7 @@ DriveSegments find_drive_segments(const DriveSignals& signals, const DriveSegmen
   out.usable = recording::stretches(signals.grid, signals.size(), [&](std::size_t k) { return found.sample[k]; });
   drop_shorter(out.usable, o.min_duration_s);
   if (out.usable.empty()) refuse(signals, o, found);
-  out.excited = within(excited_spans(signals, o, found.sample), out.usable);
+  out.excited = within(excited_spans(signals, o, found.sample, out.least_lateral_mps2), out.usable);
   drop_shorter(out.excited, o.min_duration_s);
 
   const TimeSpan whole{signals.grid.begin, signals.grid.at(signals.size() - 1)};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,8 +17,9 @@ namespace veridyn::vehicle {
 struct DriveSegmentOptions : recording::SegmentOptions {
   double min_speed_mps = 3.0;     ///< `min_speed`: slip angles mean nothing below it
   double max_steer_rad = 1.0472;  ///< `max_steer` (60 deg): beyond it the drive is not used
-  /// `min_lateral_acceleration`: rms of r u over `window` from which a stretch counts as excited.
-  double min_lateral_mps2 = 0.3;
+  /// `min_lateral_acceleration`: rms of r u over `window` from which a stretch counts as excited. Nothing: 0.3 m/s^2,
+  /// or where a drive is gentler half of what its liveliest twentieth exceeds, down to 0.05 m/s^2.
+  std::optional<double> min_lateral_mps2 = {};
   std::vector<TimeSpan> identification_spans;  ///< `identification = [10, 60, 80, 95]`: begin and end of each, as given
   std::vector<TimeSpan> holdout_spans;         ///< `holdout_spans`
 
@@ -28,7 +30,8 @@ struct DriveSegmentOptions : recording::SegmentOptions {
 
 /// Stretches of a drive and how they are used.
 struct DriveSegments : recording::Segments {
-  std::vector<TimeSpan> usable;  ///< all signals there, fast enough, wheels turned by less than `max_steer`
+  double least_lateral_mps2 = 0.0;  ///< from which a stretch counted as excited
+  std::vector<TimeSpan> usable;     ///< all signals there, fast enough, wheels turned by less than `max_steer`
 };
 
 /// Finds them. Blocks are assigned in turn, so that both uses see every kind of driving; whole runs where runs are
