@@ -61,15 +61,21 @@ MuscleResult forward(const MuscleStudy& study, Progress& progress) {
   return result;
 }
 
-/// What is to be said of the loads of a model whose loops carry part of them.
-void note_loops(const MotionAnalysis::LoopGap& gap, MuscleResult& result) {
+/// Whether a motion leaves the loops of its model open.
+void check_loops(const MotionAnalysis::LoopGap& gap, MuscleResult& result) {
   if (gap.constraint.empty()) return;
-  result.warnings.emplace_back(
-      "closed loops carry part of the loads: the generalised forces are the smallest ones that give the motion");
   constexpr double kOpen = 1e-3;
   if (gap.error > kOpen)
     result.warnings.push_back(fmt::format("the motion does not close the model's loops: {} is open by {:.3g} at {:g} s",
                                           gap.constraint, gap.error, gap.time));
+}
+
+/// What is to be said of the loads of a model whose loops carry part of them.
+void note_loops(const MotionAnalysis::LoopGap& gap, MuscleResult& result) {
+  if (!gap.constraint.empty())
+    result.warnings.emplace_back(
+        "closed loops carry part of the loads: the generalised forces are the smallest ones that give the motion");
+  check_loops(gap, result);
 }
 
 /// The rows of a prescribed motion as a result.
@@ -137,11 +143,12 @@ MuscleResult follow(const MuscleStudy& study, Progress& progress) {
   progress.stage(fmt::format("computed muscle control of {:g} s", study.end - study.begin));
   ControlResult found = computed_muscle_control(*study.system, study.motion, study.control, progress);
   MuscleResult result;
-  if (study.motion.external)
-    check_loads(
-        study,
-        analyse_motion(*study.system, study.motion, study.start.q, frame_times(study.begin, study.end, study.rate_Hz)),
-        result);
+  if (study.motion.external || !study.system->loops().empty()) {
+    const MotionAnalysis desired =
+        analyse_motion(*study.system, study.motion, study.start.q, frame_times(study.begin, study.end, study.rate_Hz));
+    check_loads(study, desired, result);
+    check_loops(desired.loop_gap, result);
+  }
   result.trajectory = std::move(found.trajectory);
   result.desired = std::move(found.desired);
   result.controls = std::move(found.controls);

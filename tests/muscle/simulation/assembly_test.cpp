@@ -10,6 +10,7 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/muscle/dynamics/dynamics.hpp"
 #include "veridyn/muscle/simulation/forward_simulation.hpp"
+#include "veridyn/muscle/simulation/system_linearization.hpp"
 
 namespace veridyn::muscle {
 namespace {
@@ -170,6 +171,16 @@ TEST(Loops, APointOnALineIsASlider) {
   EXPECT_NEAR(t.q(0, 1), 0.0, 1e-12) << "assembled on the line";
   EXPECT_NEAR(t.final_state(0), 0.0, 1e-10);
   EXPECT_NEAR(t.final_state(1), 2.0 + 0.5 * model.gravity.y() * 0.25, 1e-9);
+}
+
+TEST(Loops, DerivativesRefuseThemByName) {
+  const MusculoskeletalSystem system(test::four_bar());
+  try {
+    static_cast<void>(SystemLinearization(system, {}, {}, 0));
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("estimation) does not know closed loops, and PointConstraint 'hinge'"));
+  }
 }
 
 }  // namespace

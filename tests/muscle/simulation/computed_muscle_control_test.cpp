@@ -8,6 +8,7 @@
 
 #include "tests/muscle/minimum_jerk.hpp"
 #include "tests/muscle/reference_table.hpp"
+#include "tests/muscle/simulation/pedalling.hpp"
 #include "tests/support/folders.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
@@ -69,6 +70,30 @@ TEST(ComputedMuscleControl, MissingCoordinatesAndSenselessOptionsAreNamed) {
   EXPECT_THROW(
       (void)computed_muscle_control(system, minimum_jerk(system.model(), 0.3, 1.2), {.window = -1.0}, progress),
       InputError);
+}
+
+// The leg's loop leaves one motion, which two extensors follow down to the dead centre (beyond it nothing but reserves
+// could slow it down). Reserves may do next to nothing.
+TEST(ComputedMuscleControl, FollowsAMotionOfAClosedLoopAndItsReplayIsItself) {
+  const MusculoskeletalSystem system(test::pedals());
+  const MuscleTrajectory made = test::pedalling(system, 1e-8);
+  ASSERT_TRUE(made.usable()) << made.message();
+  Progress progress;
+  const ControlOptions options{.end = 0.2, .reserve_force = 0.01};
+  const ControlResult r = computed_muscle_control(system, test::motion_of(made, system.model()), options, progress);
+  ASSERT_TRUE(r.usable()) << r.trajectory.message();
+  EXPECT_TRUE(r.overloaded.empty());
+  EXPECT_GT(made.q(0, 2) - made.q(100, 2), 1.5);
+  for (int c = 0; c < 3; ++c) EXPECT_LT(r.tracking_error(c), 3e-3) << c;
+  EXPECT_LT(r.trajectory.reserve.cwiseAbs().maxCoeff(), 0.1);
+  const MuscleTrajectory replay =
+      simulate_forward(system, r.start, r.controls, {.end = 0.2, .accuracy = options.accuracy}, progress);
+  EXPECT_EQ(replay.q, r.trajectory.q);
+  const ControlResult fine = computed_muscle_control(system, test::motion_of(made, system.model()),
+                                                     {.end = 0.2, .reserve_force = 0.01, .accuracy = 1e-9}, progress);
+  const MuscleTrajectory finer =
+      simulate_forward(system, fine.start, fine.controls, {.end = 0.2, .accuracy = 1e-10}, progress);
+  EXPECT_LT((finer.q - fine.trajectory.q).cwiseAbs().maxCoeff(), 1e-6);
 }
 
 TEST(ComputedMuscleControl, FindsOpenSimsActivationsAndTracksCloser) {

@@ -6,7 +6,10 @@
 #include <cmath>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/dynamics/coordinate_forces.hpp"
+#include "veridyn/muscle/simulation/assembly.hpp"
+#include "veridyn/muscle/simulation/loop_directions.hpp"
 #include "veridyn/muscle/simulation/muscle_window.hpp"
 #include "veridyn/muscle/simulation/system_evaluator.hpp"
 #include "veridyn/muscle/simulation/system_stepper.hpp"
@@ -42,8 +45,11 @@ class Controller {
         ahead_(system),
         window_(system.muscles()),
         stepper_(system, {.tolerance = options.accuracy, .smallest_step = 1e-12 * (options.end - options.begin)}),
-        qp_(desired_.size(), system.muscles().size() + desired_.size()),
+        loops_(system),
         muscles_(system.muscles().size()),
+        required_(signed_index(desired_.size())),
+        controls_(required_.size(), signed_index(muscles_) + required_.size()),
+        qp_(required_.size(), controls_.cols()),
         low_(muscles_, options.min_control),
         high_(muscles_, options.max_control),
         excitation_(muscles_),
@@ -78,31 +84,55 @@ class Controller {
   ControlResult run(const StartState& pose, Progress& progress);
 
  private:
+  /// Inverse dynamics of the accelerations zddot_ of the motion set.
+  void update_moments() {
+    const ExpandedState<double>& s = ahead_.dynamics().state();
+    for (std::size_t c = 0; c < qddot_.size(); ++c) {
+      const int root = system_.reduction().free_root(static_cast<int>(c));
+      qddot_[c] = s.bias(c) + (root >= 0 ? s.slope(c) * zddot_[root] : 0.0);
+    }
+    ahead_.dynamics().dynamics().inverse_dynamics(qddot_.data(), nullptr, moment_.data());
+  }
+
+  /// Changes zddot_ to the nearest accelerations that keep the loops closed; after `update_moments`.
+  void keep_loops_closed() {
+    loops_.set_pose(ahead_.dynamics());
+    Eigen::Map<Eigen::VectorXd>(zddot_.data(), std::ssize(zddot_)) += loops_.acceleration_shortfall(ahead_.dynamics());
+    update_moments();
+  }
+
   /// Moments that the accelerations zddot_ need at the state (z_, zdot_), less those of limits and of the surroundings
-  /// at `time`; moment arms.
+  /// at `time`; moment arms. Both along the motions that loops allow.
   void update_required_moments(double time) {
     ahead_.set_motion(z_.data(), zdot_.data());
     const ExpandedState<double>& s = ahead_.dynamics().state();
     const CoordinateReduction& reduction = system_.reduction();
-    for (std::size_t c = 0; c < qddot_.size(); ++c) {
-      const int root = reduction.free_root(static_cast<int>(c));
-      qddot_[c] = s.bias(c) + (root >= 0 ? s.slope(c) * zddot_[root] : 0.0);
-    }
-    ahead_.dynamics().dynamics().inverse_dynamics(qddot_.data(), nullptr, moment_.data());
+    update_moments();
+    if (loops_.any()) keep_loops_closed();
     std::fill(reserve_.begin(), reserve_.end(), 0.0);
     ahead_.add_passive_forces(reserve_.data());
     ahead_.add_external_forces(external_.get(), time, reserve_.data());
-    qp_.b.setZero();
-    qp_.A.setZero();
+    required_.setZero();
+    controls_.setZero();
     for (std::size_t c = 0; c < moment_.size(); ++c) {
       const int root = reduction.free_root(static_cast<int>(c));
-      if (root >= 0) qp_.b(root) += s.slope(c) * (moment_[c] - reserve_[c]);
+      if (root >= 0) required_(root) += s.slope(c) * (moment_[c] - reserve_[c]);
     }
     const auto pairs = system_.pairs();
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const int root = reduction.free_root(pairs[i].coordinate);
-      if (root >= 0) qp_.A(root, pairs[i].muscle) -= s.slope(pairs[i].coordinate) * ahead_.path_gradient()[i];
+      if (root >= 0) controls_(root, pairs[i].muscle) -= s.slope(pairs[i].coordinate) * ahead_.path_gradient()[i];
     }
+    controls_.rightCols(required_.size()).setIdentity();
+    if (!loops_.any()) {
+      qp_.A = controls_;
+      qp_.b = required_;
+      return;
+    }
+    const Eigen::MatrixXd& along = loops_.directions();
+    if (qp_.b.size() != along.cols()) qp_ = numerics::SeparableQp(along.cols(), controls_.cols());
+    qp_.A.noalias() = along.transpose() * controls_;
+    qp_.b.noalias() = along.transpose() * required_;
   }
 
   /// min sum (F/F_opt)^2 + sum (reserve/optimal)^2 with the forces between force_low_ and force_high_. Reserves act on
@@ -120,7 +150,6 @@ class Controller {
     for (std::size_t f = 0; f < desired_.size(); ++f) {
       const auto i = static_cast<Eigen::Index>(muscles_ + f);
       qp_.weight(i) = 2.0 / (reserve_optimal_[f] * reserve_optimal_[f]);
-      qp_.A(f, i) = 1.0;
     }
     static_cast<void>(qp_.solve());
     for (std::size_t m = 0; m < muscles_; ++m) force_[m] = qp_.x()(m);
@@ -137,7 +166,7 @@ class Controller {
     return false;
   }
 
-  void start_muscles(double* x);
+  void start_muscles(const Assembly& closed, double* x);
   [[nodiscard]] bool plan_window(double t, double end, const double* x);
 
   const MusculoskeletalSystem& system_;
@@ -147,8 +176,12 @@ class Controller {
   SystemEvaluator<double> evaluator_, ahead_;
   MuscleWindow window_;
   SystemStepper stepper_;
-  numerics::SeparableQp qp_;
+  LoopDirections loops_;
   std::size_t muscles_;
+  /// Forces that the accelerations need, and what unit forces of muscles and reserves do, by free coordinate.
+  Eigen::VectorXd required_;
+  Eigen::MatrixXd controls_;
+  numerics::SeparableQp qp_;
   /// By free coordinate: force at control 1, and what more than that counts as overloaded [N m or N].
   std::vector<double> reserve_optimal_, reserve_limit_;
   std::vector<double> low_, high_, excitation_, force_low_, force_high_, force_, optimal_, activation_, fiber_;
@@ -158,18 +191,15 @@ class Controller {
 };
 
 /// Muscles in equilibrium at the desired start, at activations that produce the desired moments together.
-void Controller::start_muscles(double* x) {
+void Controller::start_muscles(const Assembly& closed, double* x) {
   for (std::size_t f = 0; f < desired_.size(); ++f) {
-    const numerics::FunctionValue<double> w = desired_[f].evaluate(options_.begin);
-    z_[f] = w.value;
-    zdot_[f] = w.slope;
-    zddot_[f] = w.curvature;
-    x[f] = w.value;
-    x[desired_.size() + f] = w.slope;
-    demand_[f] = w.curvature;
-    planned_speed_[f] = w.slope;
+    const int c = system_.reduction().free()[f];
+    x[f] = z_[f] = closed.q(c);
+    x[desired_.size() + f] = zdot_[f] = planned_speed_[f] = closed.qdot(c);
+    zddot_[f] = desired_[f].evaluate(options_.begin).curvature;
   }
   update_required_moments(options_.begin);
+  demand_ = zddot_;
   const auto force_at = [&](std::span<const double> activation, std::span<double> force) {
     std::vector<double> fibers(muscles_);
     system_.muscles().equilibrium(activation, ahead_.path_length(), fibers);
@@ -238,12 +268,14 @@ ControlResult Controller::run(const StartState& pose, Progress& progress) {
   ahead_.hold(pose.q.data());
   const StateLayout& layout = system_.layout();
   std::vector<double> x(layout.size);
-  start_muscles(x.data());
   for (std::size_t f = 0; f < desired_.size(); ++f) {
+    const numerics::FunctionValue<double> w = desired_[f].evaluate(options_.begin);
     const int c = system_.reduction().free()[f];
-    result.start.q(c) = x[f];
-    result.start.qdot(c) = x[desired_.size() + f];
+    result.start.q(c) = w.value;
+    result.start.qdot(c) = w.slope;
   }
+  // As a forward simulation closes the loops of this start.
+  start_muscles(assemble(system_, result.start.q, result.start.qdot), x.data());
   result.start.activation = Eigen::Map<const Eigen::VectorXd>(excitation_.data(), static_cast<Eigen::Index>(muscles_));
 
   const auto windows = static_cast<std::size_t>(std::ceil((options_.end - options_.begin) / options_.window - 1e-9));
@@ -295,7 +327,6 @@ void check(const MusculoskeletalSystem& system, const ControlOptions& o) {
           "reserve forces must be as many as coordinates");
   for (const double force : o.reserve_forces) require(force >= 0.0, "a reserve's optimal force must not be negative");
   require(system.muscles().size() > 0, "the model has no muscles");
-  system.refuse_loops("computed muscle control");
 }
 
 }  // namespace

@@ -56,6 +56,9 @@ struct ControlResult {
 /// the result: OpenSim writes them as samples to be interpolated, which is why a replay of its controls departs from
 /// its motion.
 ///
+/// Closed loops: (1) the nearest accelerations that keep them closed; (3) balanced along the motions that they allow,
+/// whatever the loops carry. The start is assembled.
+///
 /// Locked coordinates are held where the motion, if it has them, is at `begin`; else at the model's default.
 /// Every free coordinate must be in the motion. @throws InputError naming the one that is not, or options outside their
 /// range.

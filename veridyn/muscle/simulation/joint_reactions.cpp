@@ -4,6 +4,7 @@
 
 #include "veridyn/core/index.hpp"
 #include "veridyn/muscle/dynamics/external_forces.hpp"
+#include "veridyn/muscle/simulation/loop_directions.hpp"
 #include "veridyn/muscle/simulation/system_evaluator.hpp"
 
 namespace veridyn::muscle {
@@ -40,6 +41,7 @@ class ReactionSolver {
       : system_(system),
         moved_(moved),
         evaluator_(system),
+        loops_(system),
         cut_(with_hinges(system.model()), as_prepared(system)),
         dynamics_(cut_.mechanism()),
         paths_(cut_.paths()),
@@ -52,6 +54,7 @@ class ReactionSolver {
     Eigen::VectorXd q = moved_.q.row(row), qdot = moved_.qdot.row(row), qddot;
     if (moved_.qddot.size() > 0) {
       qddot = moved_.qddot.row(row);
+      if (!system_.loops().empty()) close_loops(q, qdot, qddot, row);
     } else {
       qddot = accelerations(q, qdot, row);
       q = evaluator_.dynamics().state().q;
@@ -71,7 +74,8 @@ class ReactionSolver {
   [[nodiscard]] const Mechanism& mechanism() const { return cut_.mechanism(); }
 
  private:
-  Eigen::VectorXd accelerations(const Eigen::VectorXd& q, const Eigen::VectorXd& qdot, Eigen::Index row) {
+  /// Sets the pose; tau_ are the generalised forces of a row, by coordinate, but those of loops.
+  void set_forces(const Eigen::VectorXd& q, const Eigen::VectorXd& qdot, Eigen::Index row) {
     evaluator_.set_pose(q.data(), qdot.data());
     std::fill(tau_.begin(), tau_.end(), 0.0);
     for (Eigen::Index c = 0; c < moved_.reserve.cols(); ++c) tau_[c] = moved_.reserve(row, c);
@@ -80,15 +84,34 @@ class ReactionSolver {
       tau_[pairs[k].coordinate] -= moved_.tendon_force(row, pairs[k].muscle) * evaluator_.path_gradient()[k];
     if (moved_.passive) evaluator_.add_passive_forces(tau_.data());
     evaluator_.add_external_forces(moved_.external, moved_.time[row], tau_.data());
+  }
+
+  Eigen::VectorXd accelerations(const Eigen::VectorXd& q, const Eigen::VectorXd& qdot, Eigen::Index row) {
+    set_forces(q, qdot, row);
     static_cast<void>(evaluator_.dynamics().forward_dynamics(tau_.data(), nullptr, zddot_.data()));
     return evaluator_.dynamics().qddot();
+  }
+
+  /// Multipliers of the loops with which the forces of a row give its accelerations.
+  void close_loops(const Eigen::VectorXd& q, const Eigen::VectorXd& qdot, const Eigen::VectorXd& qddot,
+                   Eigen::Index row) {
+    set_forces(q, qdot, row);
+    Eigen::VectorXd lacking(qddot.size());
+    evaluator_.dynamics().dynamics().inverse_dynamics(qddot.data(), nullptr, lacking.data());
+    const CoordinateReduction& reduction = system_.reduction();
+    Eigen::VectorXd along = Eigen::VectorXd::Zero(signed_index(reduction.free().size()));
+    for (Eigen::Index c = 0; c < lacking.size(); ++c) {
+      const int root = reduction.free_root(static_cast<int>(c));
+      if (root >= 0) along(root) += evaluator_.dynamics().state().slope(c) * (lacking(c) - tau_[c]);
+    }
+    loops_.carry(along, loops_.set_pose(evaluator_.dynamics()));
   }
 
   /// All forces on links but those of joints.
   void pull(Eigen::Index row, const Eigen::VectorXd& q, const Eigen::VectorXd& qdot) {
     const Kinematics<double>& kinematics = dynamics_.kinematics();
     std::fill(applied_.begin(), applied_.end(), SpatialVector<double>{});
-    if (const LoopSolver<double>* loops = evaluator_.dynamics().loops(); loops != nullptr && moved_.qddot.size() == 0) {
+    if (const LoopSolver<double>* loops = evaluator_.dynamics().loops(); loops != nullptr) {
       for (int r = 0; r < loops->rows(); ++r) {
         const LoopConstraints::Constraint& c = cut_.loops().of_row(r);
         applied_[c.link_2].add_scaled(loops->multiplier(r), loops->row(r).force);
@@ -106,6 +129,7 @@ class ReactionSolver {
   const MusculoskeletalSystem& system_;
   const MovedModel& moved_;
   SystemEvaluator<double> evaluator_;
+  LoopDirections loops_;
   MusculoskeletalSystem cut_;
   Dynamics<double> dynamics_;
   PathWorkspace<double> paths_;
@@ -129,7 +153,6 @@ Eigen::Matrix3d axes_of(const Joint& joint, const Mechanism& mechanism, const Ki
 }  // namespace
 
 JointReactions joint_reactions(const MusculoskeletalSystem& system, const MovedModel& moved, ReactionFrame frame) {
-  if (moved.qddot.size() > 0) system.refuse_loops("joint reactions of a given motion");
   const Model& model = system.model();
   JointReactions reactions;
   for (std::size_t j = 0; j < model.joints.size(); ++j) reactions.joints.push_back(static_cast<int>(j));

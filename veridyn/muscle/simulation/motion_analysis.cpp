@@ -4,8 +4,8 @@
 
 #include "veridyn/core/index.hpp"
 #include "veridyn/muscle/dynamics/coordinate_forces.hpp"
+#include "veridyn/muscle/simulation/loop_directions.hpp"
 #include "veridyn/muscle/simulation/system_evaluator.hpp"
-#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 
 namespace veridyn::muscle {
 namespace {
@@ -50,49 +50,42 @@ MotionAnalysis empty_analysis(const MusculoskeletalSystem& system, const std::ve
 /// View of a system: what the closed loops of its model carry.
 class LoopShare {
  public:
-  explicit LoopShare(const MusculoskeletalSystem& system)
-      : system_(system), n_(signed_index(system.reduction().free().size())), jacobian_(system.loops().rows(), n_) {}
+  explicit LoopShare(const MusculoskeletalSystem& system) : system_(system), motions_(system) {}
 
-  [[nodiscard]] bool any() const { return jacobian_.rows() > 0; }
+  [[nodiscard]] bool any() const { return motions_.any(); }
 
   /// Looks at the loops of a pose. The evaluator is left at it, with the speeds of free coordinates only.
   void set_pose(const Eigen::VectorXd& q, const Eigen::VectorXd& qdot, double time, SystemEvaluator<double>& evaluator,
                 MotionAnalysis::LoopGap& gap) {
     evaluator.set_pose(q.data(), qdot.data());
-    loops_ = &evaluator.dynamics().update_loops();
+    loops_ = &motions_.set_pose(evaluator.dynamics());
     for (int r = 0; r < loops_->rows(); ++r) {
-      jacobian_.row(r) = Eigen::Map<const Eigen::RowVectorXd>(loops_->jacobian(r), n_);
       const double error = std::abs(loops_->row(r).error);
       if (!gap.constraint.empty() && error <= gap.error) continue;
       gap = {loops_->loops().of_row(r).text, error, time};
     }
-    const numerics::Eliminated basis =
-        numerics::eliminate(jacobian_.transpose(), Eigen::MatrixXd::Identity(n_, n_), LoopSolver<double>::kRounding);
-    directions_ = basis.rest.bottomRows(n_ - basis.rank).transpose();
   }
 
   /// Orthonormal: the motions of the free coordinates that the loops allow.
-  [[nodiscard]] const Eigen::MatrixXd& directions() const { return directions_; }
+  [[nodiscard]] const Eigen::MatrixXd& directions() const { return motions_.directions(); }
 
   /// Takes what the loops carry off the forces that a motion needs.
   template <typename Row>
   void take_off(const Eigen::VectorXd& slope, const Kinematics<double>& kinematics, Row&& moment) {
-    Eigen::VectorXd required = Eigen::VectorXd::Zero(n_), carried = Eigen::VectorXd::Zero(slope.size());
+    Eigen::VectorXd required = Eigen::VectorXd::Zero(motions_.jacobian().cols()),
+                    carried = Eigen::VectorXd::Zero(slope.size());
     for (Eigen::Index c = 0; c < slope.size(); ++c) {
       const int root = system_.reduction().free_root(static_cast<int>(c));
       if (root >= 0) required(root) += slope(c) * moment(c);
     }
-    const estimation::RowMatrix rows = jacobian_;
-    const Eigen::VectorXd wanted = jacobian_ * required;
-    loops_->solve(rows.data(), wanted.data());
+    motions_.carry(required, *loops_);
     loops_->add_generalized_forces(kinematics, carried.data());
     moment -= carried.transpose();
   }
 
  private:
   const MusculoskeletalSystem& system_;
-  Eigen::Index n_;
-  Eigen::MatrixXd jacobian_, directions_;
+  LoopDirections motions_;
   LoopSolver<double>* loops_ = nullptr;
 };
 

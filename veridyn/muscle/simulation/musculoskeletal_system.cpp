@@ -133,7 +133,7 @@ void MusculoskeletalSystem::refuse_loops(std::string_view method) const {
   if (loops_.empty()) return;
   throw InputError(model_.name,
                    fmt::format("{} does not know closed loops, and {} closes one; forward simulation, inverse "
-                               "dynamics and static optimization do",
+                               "dynamics, static optimization and computed muscle control do",
                                method, loops_.constraints().front().text));
 }
 
