@@ -5,8 +5,10 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/muscle/muscle_study_parts.hpp"
+#include "veridyn/muscle/osim/joint_speeds.hpp"
 
 namespace veridyn::muscle::internal {
 namespace {
@@ -76,15 +78,29 @@ ReadFromFiles<StartState> read_start_file(const StudyTable& motion, const Muscle
   };
   const auto muscles = signed_index(model.muscles.size());
   bool any = false;
+  const auto unit = [&](std::size_t c) {
+    return table.rotations_in_degrees && model.coordinates[c].motion == CoordinateMotion::kRotational ? kDegree : 1.0;
+  };
   for (std::size_t c = 0; c < model.coordinates.size(); ++c) {
-    const Coordinate& coordinate = model.coordinates[c];
-    const bool degrees = table.rotations_in_degrees && coordinate.motion == CoordinateMotion::kRotational;
-    const double unit = degrees ? kDegree : 1.0;
-    any = any || state_column(table, coordinate.name, "value") >= 0;
-    start.q(c) = unit * value(coordinate.name, "value", start.q(c) / unit);
-    start.qdot(c) = unit * value(coordinate.name, "speed", start.qdot(c) / unit);
+    const std::string& name = model.coordinates[c].name;
+    any = any || state_column(table, name, "value") >= 0;
+    start.q(c) = unit(c) * value(name, "value", start.q(c) / unit(c));
   }
   if (!any) motion.fail("start_file", fmt::format("{} has no column of a coordinate's value", path.string()));
+  if (table.storage) start.qdot = opensim_speeds(model, study.start.q, start.qdot);
+  for (std::size_t c = 0; c < model.coordinates.size(); ++c) {
+    const std::string& name = model.coordinates[c].name;
+    // "NAME_u" before OpenSim 4.
+    const double otherwise = table.storage ? value(name, "u", start.qdot(c) / unit(c)) : start.qdot(c) / unit(c);
+    start.qdot(c) = unit(c) * value(name, "speed", otherwise);
+  }
+  if (table.storage) {
+    try {
+      start.qdot = rates_of_opensim_speeds(model, start.q, start.qdot);
+    } catch (const InputError& error) {
+      motion.fail("start_file", fmt::format("{} at {:g} s: {}", path.string(), study.begin, error.what()));
+    }
+  }
   Eigen::VectorXd activation(muscles), fiber(muscles);
   bool all = true;
   for (Eigen::Index m = 0; m < muscles; ++m) {

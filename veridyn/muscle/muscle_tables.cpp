@@ -3,6 +3,7 @@
 
 #include "veridyn/core/index.hpp"
 #include "veridyn/muscle/muscle_run.hpp"
+#include "veridyn/muscle/osim/joint_speeds.hpp"
 
 namespace veridyn::muscle {
 namespace {
@@ -113,6 +114,9 @@ io::Storage state_storage(const MuscleStudy& study, const MuscleResult& result) 
   const Model& model = study.system->model();
   const MuscleTrajectory& t = result.trajectory;
   const StateLayout& layout = study.system->layout();
+  estimation::RowMatrix speed = t.qdot;
+  for (Eigen::Index i = 0; i < speed.rows(); ++i)
+    speed.row(i) = opensim_speeds(model, t.q.row(i).transpose(), t.qdot.row(i).transpose()).transpose();
   io::Storage storage;
   storage.source = "states.sto";
   storage.name = model.name.empty() ? "states" : model.name;
@@ -126,7 +130,7 @@ io::Storage state_storage(const MuscleStudy& study, const MuscleResult& result) 
     const Coordinate& k = model.coordinates[c];
     const std::string place = fmt::format("/jointset/{}/{}", model.joints[k.joint].name, k.name);
     add(place + "/value", t.q, c);
-    add(place + "/speed", t.qdot, c);
+    add(place + "/speed", speed, c);
   }
   for (std::size_t m = 0; m < model.muscles.size(); ++m) {
     const std::string place = "/forceset/" + model.muscles[m].name();

@@ -7,6 +7,7 @@
 #include "tests/support/simbody/simbody_description.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/muscle/dynamics/reduced_dynamics.hpp"
+#include "veridyn/muscle/osim/joint_speeds.hpp"
 #include "veridyn/muscle/simulation/assembly.hpp"
 
 namespace veridyn::muscle {
@@ -94,6 +95,9 @@ int compare_motion(const Model& model, RandomStream& random, double size) {
     const Eigen::VectorXd tau = test::random_state(n, 20.0, random);
     ours.set_state(closed.q.data(), closed.qdot.data(), nullptr);
     theirs.set_state(closed.q, closed.qdot);
+    const Eigen::VectorXd speeds = theirs.speeds();
+    EXPECT_LT((opensim_speeds(model, closed.q, closed.qdot) - speeds).norm(), 1e-12 * (1.0 + speeds.norm()));
+    EXPECT_LT((rates_of_opensim_speeds(model, closed.q, speeds) - closed.qdot).norm(), 1e-10 * (1.0 + speeds.norm()));
     for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
       const test::TreeDescription::Frame expected = theirs.body_pose(b);
       const Pose<double> pose = body_pose(mechanism, ours.kinematics(), b);

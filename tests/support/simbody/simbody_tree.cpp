@@ -196,6 +196,8 @@ void SimbodyTree::set_state(const Eigen::VectorXd& q, const Eigen::VectorXd& qdo
   system_->system.realize(system_->state, SimTK::Stage::Dynamics);
 }
 
+Eigen::VectorXd SimbodyTree::speeds() const { return System::ours(system_->state.getU(), system_->u_slot); }
+
 Eigen::VectorXd SimbodyTree::accelerations(const Eigen::VectorXd& tau) {
   SimTK::Vector on_speeds;
   system_->matter.multiplyByN(system_->state, true, system_->as_q(tau), on_speeds);

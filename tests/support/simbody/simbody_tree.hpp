@@ -62,6 +62,8 @@ class SimbodyTree {
 
   /// Vectors by the coordinates of the model.
   void set_state(const Eigen::VectorXd& q, const Eigen::VectorXd& qdot);
+  /// Simbody's, of the state set, by the coordinate whose place among its joint's they have.
+  [[nodiscard]] Eigen::VectorXd speeds() const;
   /// With the coordinate forces tau and gravity.
   [[nodiscard]] Eigen::VectorXd accelerations(const Eigen::VectorXd& tau);
   /// Realizes to accelerations with no forces but gravity, after a change of state: for time measurements.

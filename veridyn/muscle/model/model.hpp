@@ -40,7 +40,7 @@ struct Coordinate {
   CoordinateMotion motion = CoordinateMotion::kRotational;
   int joint = 0;
   double default_value = 0.0;  ///< [rad] or [m]
-  double default_speed = 0.0;  ///< [rad/s] or [m/s]
+  double default_speed = 0.0;  ///< rate at the default pose [rad/s] or [m/s]
   double low = 0.0;            ///< of its range [rad] or [m]
   double high = 0.0;
   bool clamped = false;

@@ -24,6 +24,7 @@ SignalTable from_storage(const io::Storage& storage) {
   table.time = storage.time;
   for (std::size_t i = 0; i < storage.columns(); ++i) table.values.push_back(storage.column(i));
   table.rotations_in_degrees = storage.in_degrees;
+  table.storage = true;
   return table;
 }
 

@@ -23,6 +23,8 @@ struct SignalTable {
   /// True for storage files with `inDegrees=yes`: rotations, which only a model knows, are in degrees. The columns of a
   /// CSV are in SI already.
   bool rotations_in_degrees = false;
+  /// A storage file of OpenSim's: speeds are those of `opensim_speeds`. Elsewhere they are rates of the coordinates.
+  bool storage = false;
 
   /// Index of the column that means `name` in one of the ways OpenSim and this program write it: "name",
   /// "name.suffix", "name_suffix", "/jointset/.../name", "/forceset/name/suffix"; -1 when there is none.

@@ -49,6 +49,8 @@ void read_wrap_objects(Context& context);
 void read_joints(Context& context);
 /// Reads the document's constraints into the model. @throws InputError with file, line and element.
 void read_constraints(Context& context);
+/// Makes rates of the default speeds, as OpenSim counts them, at the default pose.
+void read_default_speeds(Context& context);
 /// Reads the document's forces into the model. @throws InputError with file, line and element.
 void read_forces(Context& context);
 /// Reads the document's markers into the model. @throws InputError with file, line and element.

@@ -7,7 +7,9 @@
 #include <numbers>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/muscle/osim/joint_speeds.hpp"
 #include "veridyn/muscle/osim/osim_context.hpp"
 #include "veridyn/muscle/osim/osim_function.hpp"
 
@@ -355,6 +357,18 @@ void grow_tree(Context& context) {
 void read_joints(Context& context) {
   for (const JointSource& source : joint_sources(context)) read_joint(context, source);
   grow_tree(context);
+}
+
+void read_default_speeds(Context& context) {
+  Model& model = context.model;
+  Eigen::VectorXd speeds(signed_index(model.coordinates.size()));
+  for (Eigen::Index c = 0; c < speeds.size(); ++c) speeds(c) = model.coordinates[at(c)].default_speed;
+  try {
+    speeds = rates_of_opensim_speeds(model, model.default_pose(), speeds);
+  } catch (const InputError& error) {
+    throw InputError(context.document.name(), fmt::format("default_speed_value: {}", error.what()));
+  }
+  for (Eigen::Index c = 0; c < speeds.size(); ++c) model.coordinates[at(c)].default_speed = speeds(c);
 }
 
 }  // namespace veridyn::muscle::osim

@@ -264,6 +264,7 @@ OsimFile OsimFile::parse(std::string text, std::string name) {
   osim::read_wrap_objects(context);
   osim::read_joints(context);
   osim::read_constraints(context);
+  osim::read_default_speeds(context);
   osim::read_forces(context);
   osim::read_markers(context);
   for (const char* set : {"ControllerSet", "ProbeSet", "ComponentSet", "components"}) {
