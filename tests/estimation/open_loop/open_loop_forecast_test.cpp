@@ -25,9 +25,10 @@ std::vector<double> decaying(std::size_t samples, double a, double noise, double
   return x;
 }
 
-OpenLoopForecast forecast_of(const Decay& decay, const OpenLoopError& error, double sigma_a,
+template <typename Model>
+OpenLoopForecast forecast_of(const Model& decay, const OpenLoopError& error, double sigma_a,
                              std::vector<std::string> drifting = {}) {
-  Decay model = decay, first = decay;
+  Model model = decay, first = decay;
   const Eigen::MatrixXd covariance = Eigen::MatrixXd::Constant(1, 1, sigma_a * sigma_a);
   const std::vector<OpenLoopError> errors{error};
   Progress silent;
@@ -94,6 +95,39 @@ TEST(OpenLoopForecast, HasThePriorOfAConditionThatDoesNotStay) {
   const double response = std::exp(-kA * 5.0);
   EXPECT_LT(stays.sigma(50, 0), 1.1 * white);
   EXPECT_NEAR(drifts.sigma(50, 0), std::hypot(stays.sigma(50, 0), response * prior), 1e-9);
+}
+
+/// Pushed by what is not among its inputs: two draws, one of them up, one down, and one that diverged.
+class PushedDecay : public Decay {
+ public:
+  using Decay::Decay;
+  static double pushed(Eigen::Index k) { return 0.1 * kStep * static_cast<double>(k); }
+  std::vector<RowMatrix> disturbances(std::size_t segment, const Eigen::VectorXd&) const override {
+    RowMatrix up(samples(segment), 1);
+    for (Eigen::Index k = 0; k < up.rows(); ++k) up(k, 0) = pushed(k);
+    return {up, -up, {}};
+  }
+};
+
+// The start is disturbed as what comes after it, and makes up for a part: what all samples of the first two seconds
+// share weighs less than what is new in each.
+TEST(OpenLoopForecast, HasWhatDisturbancesDoLessWhatTheStartMakesUpFor) {
+  const double white = 0.02;
+  const OpenLoopForecast f = forecast_of(PushedDecay(decaying(201, kA, white), kA), {.white = white}, 0.0);
+  double sum = 0.0;
+  for (int k = 0; k <= 20; ++k) sum += PushedDecay::pushed(k);
+  const double variance = white * white + sum * sum / 21.0;
+  double information = 0.0, pull = 0.0;
+  for (int k = 0; k <= 20; ++k) {
+    const double decay = std::exp(-kA * 0.1 * k);
+    information += decay * decay / variance;
+    pull += decay * PushedDecay::pushed(k) / variance;
+  }
+  for (const int k : {0, 20, 100, 200}) {
+    const double decay = std::exp(-kA * 0.1 * k);
+    const double d = PushedDecay::pushed(k) - decay * pull / information;
+    EXPECT_NEAR(f.sigma(k, 0), std::sqrt(decay * decay / information + white * white + d * d), 1e-9) << k;
+  }
 }
 
 TEST(OpenLoopForecast, LeavesItsBandWhereTheErrorOfHalfASecondIsThreeSigma) {

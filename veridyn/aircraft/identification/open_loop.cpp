@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <utility>
 
+#include "veridyn/aircraft/identification/missed_gusts.hpp"
 #include "veridyn/aircraft/identification/output_error_model.hpp"
 #include "veridyn/aircraft/model/natural_periods.hpp"
 #include "veridyn/core/index.hpp"
@@ -27,6 +29,8 @@ using estimation::OpenLoopForecast;
 
 /// Steps of the integration are at most this long [s]: a roll mode of 30 1/s is then right to 1e-7.
 constexpr double kLongestStep_s = 0.002;
+
+constexpr std::uint64_t kGustSeed = 80;
 
 constexpr std::array<const char*, 8> kStates{"airspeed", "alpha", "beta", "p", "q", "r", "roll", "pitch"};
 
@@ -90,6 +94,37 @@ struct AxisFlight {
   const OpenLoopOptions& options;
 };
 
+/// What drives a flight and is not among the inputs of its simulation.
+MissedGusts missed_gusts(const AxisFlight& of, std::span<const TimeSpan> windows, bool gusts) {
+  const FlightSignals& signals = of.flight.signals;
+  double airspeed = 0.0, density = 0.0, count = 0.0;
+  for (const TimeSpan& window : windows) {
+    const auto [first, last] = signals.indices(window);
+    for (std::size_t k = first; k < last; ++k) {
+      const double Va = signals[FlightSignal::kAirspeed].value[k], rho = signals.air_density[k];
+      if (!std::isfinite(Va + rho)) continue;
+      airspeed += Va;
+      density += rho;
+      count += 1.0;
+    }
+  }
+  airspeed = std::max(1.0, airspeed / std::max(1.0, count));
+  density /= std::max(1.0, count);
+  std::array<double, 3> noise{kInfinity, kInfinity, kInfinity};
+  for (const SensorReport& sensor : of.flight.reconstruction.sensors) {
+    if (!(sensor.rate_Hz > 0.0)) continue;
+    const auto seen = [&](std::size_t axis, double sigma) { noise[axis] = 2.0 * sigma * sigma / sensor.rate_Hz; };
+    if (sensor.channel == "airspeed") seen(0, sensor.sigma);
+    if (sensor.channel == "dynamic_pressure" && density > 0.0) seen(0, sensor.sigma / (density * airspeed));
+    if (sensor.channel == "beta") seen(1, sensor.sigma * airspeed);
+    if (sensor.channel == "alpha") seen(2, sensor.sigma * airspeed);
+  }
+  // Who says that the air was calm is believed.
+  const bool calm = of.options.gusts == false;
+  const numerics::FirKernel input = gust_differentiator(signals.grid.rate_Hz());
+  return {calm ? DrydenSettings{} : of.flight.reconstruction.turbulence, airspeed, noise, gusts ? &input : nullptr};
+}
+
 /// All windows of an axis of a flight.
 std::vector<OpenLoopForecast> flown_axis(const AxisFlight& of, RowUse use, Progress& progress,
                                          std::vector<estimation::ModelOutput>& states) {
@@ -102,8 +137,17 @@ std::vector<OpenLoopForecast> flown_axis(const AxisFlight& of, RowUse use, Progr
       spans, of.subject, of.models,
       {.fixed_parameters = true,
        .stall = true,
+       .own_thrust = true,
        .offsets = of.options.offsets,
        .steps_per_sample = std::max(1, static_cast<int>(std::ceil(signals.grid.step / kLongestStep_s - 1e-9)))});
+  if (const MissedGusts missed = missed_gusts(of, windows, gusts); missed.any()) {
+    // So many give a standard deviation to 8 %.
+    constexpr std::size_t kDraws = 80;
+    model.set_air_draws(kDraws, [missed](std::size_t segment, std::size_t draw, std::size_t points, double step_s) {
+      numerics::RandomStream random(kGustSeed, kDraws * segment + draw);
+      return missed.acceleration(points, step_s, random);
+    });
+  }
   states.assign(model.outputs().begin(), model.outputs().begin() + signed_index(model.forecast_outputs()));
   const std::vector<OpenLoopError> errors = errors_of(model, signals);
   std::vector<bool> judged;
@@ -171,6 +215,14 @@ NaturalPeriods periods_of(std::span<const PreparedFlight> flights, std::span<con
   return natural_periods(subject, aero_variables(mean, subject, rho / count), rho / count);
 }
 
+/// The air that drives the model, and what the bands know of it.
+std::string air_of(const OpenLoop& o, bool gusts) {
+  if (gusts) return "reconstructed gusts";
+  if (o.air_known) return "calm air";
+  return o.air_in_bands ? "calm air, since no gusts are known: the bands hold what may have blown"
+                        : "calm air, since no gusts are known: the bands do not hold them, and are too narrow";
+}
+
 std::string text_of(const OpenLoop& o, bool gusts, bool any_model) {
   if (!o.available())
     return fmt::format("nothing was flown open loop: {}",
@@ -182,7 +234,7 @@ std::string text_of(const OpenLoop& o, bool gusts, bool any_model) {
       "{} window{} of {:.0f} s at most ({:.0f} s forecast in all) integrated from deflections and thrust alone on data "
       "that identification did not see; the first {:g} s of each give its initial state{}; {}{}{}",
       o.windows.size(), o.windows.size() == 1 ? "" : "s", o.options.duration_s, o.forecast_s, o.options.start_s,
-      o.options.offsets.empty() ? "" : " and the constants of its own", gusts ? "reconstructed gusts" : "calm air",
+      o.options.offsets.empty() ? "" : " and the constants of its own", air_of(o, gusts),
       o.driven.empty() ? ""
                        : fmt::format("; as measured, since no coefficient moves them: {}", fmt::join(o.driven, ", ")),
       diverged > 0 ? fmt::format("; {} diverged and were cut", diverged) : "");
@@ -212,7 +264,9 @@ OpenLoop fly_open_loop(std::span<const PreparedFlight> flights, RowUse use, cons
     for (const PreparedFlight& flight : flights) {
       if (!flight.usable() || models.empty() || progress.interrupted()) continue;
       gusts = gusts || options.gusts.value_or(flight.signals.over_ground);
-      out.air_known = out.air_known && (options.gusts.has_value() || flight.signals.over_ground);
+      const bool air = options.gusts.has_value() || flight.signals.over_ground;
+      out.air_known = out.air_known && air;
+      out.air_in_bands = out.air_in_bands && (air || !flight.reconstruction.turbulence.calm());
       const AxisFlight of{flight, axis, subject, models, covariance, options};
       for (OpenLoopForecast& f : flown_axis(of, use, progress, states)) flown.push_back(std::move(f));
     }

@@ -20,6 +20,7 @@ namespace veridyn::aircraft {
 struct OpenLoop : estimation::OpenLoop {
   OpenLoopOptions options = {};
   bool air_known = true;                      ///< gusts are an input, or the study says that there were none
+  bool air_in_bands = true;                   ///< where it is not known: what may have blown widens the bands
   std::vector<std::string> driven = {};       ///< states that no coefficient moves: taken as measured
   std::optional<double> short_period_s = {};  ///< of the model where it was flown; of alpha and q
   std::optional<double> dutch_roll_s = {};    ///< of beta and r
@@ -36,8 +37,10 @@ struct OpenLoop : estimation::OpenLoop {
 /// and roll in lateral ones.
 ///
 /// Bands and horizon are those of `estimation::open_loop_forecasts`, with the parameters' covariance (of `estimate`),
-/// a prior of 0 +- 0.05 of the offsets, and the sensors' errors as they pass the filters. Those of smoothed signals
-/// last: they hardly change within seconds.
+/// a prior of 0 +- 0.05 of the offsets, the sensors' errors as they pass the filters, and what moves the aircraft and
+/// is no input: `MissedGusts` of the spectrum that the reconstruction assumed, all of the gusts where none are an
+/// input. Errors of smoothed signals last: they hardly change within seconds. A thrust that was computed from the
+/// throttle is that at the simulated airspeed.
 ///
 /// The integration is that of Runge-Kutta of fourth order at steps of 2 ms at most, inputs linear between samples.
 /// Windows run on the threads of `progress`, to the same bits on any number.
@@ -49,8 +52,8 @@ struct OpenLoop : estimation::OpenLoop {
 /// The rows that grade it, which bear on the prediction:
 /// - *open loop horizon*, of each axis: how long its states stay within their bands, in periods of the short-period
 ///   motion (longitudinal) or the Dutch roll (lateral). Below 10 with care. Below 3 failed where the error is also more
-///   than a quarter of the motion's standard deviation: the bands know parameters and sensors, and not the gusts that a
-///   reconstruction misses, which throw a right model out of them by less. Where nothing is known of the air
+///   than a quarter of the motion's standard deviation: gusts that are stronger than was assumed throw a right model
+///   out of its bands by less. Where nothing is known of the air
 ///   (`air_known`), more than 3.3 times, an R^2 of -10. Not verified where the windows are shorter than 10 periods and
 ///   most are held to their end;
 /// - *open loop against the mean*, of each state: with care where the error is larger than the motion's standard

@@ -28,8 +28,8 @@ std::optional<Evidence> horizon_row(const OpenLoop& flown, Axis axis) {
           "see in the report in which manoeuvre it leaves; a term may be missing (identify.structure), or an air-data "
           "sensor be wrong",
       .advice_small =
-          "trust its forecasts as far as the error found, not its bands: these know parameters and sensors, not the "
-          "gusts that the reconstruction misses"};
+          "trust its forecasts as far as the error found, not its bands: a small term may be missing, or gusts be "
+          "stronger than the reconstruction assumed (reconstruct.turbulence)"};
   if (!flown.air_known) {
     horizon.large_error = kLargeErrorInGusts;
     horizon.advice_large = horizon.advice_small =

@@ -6,6 +6,7 @@
 #include <array>
 #include <utility>
 
+#include "veridyn/aircraft/identification/missed_gusts.hpp"
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/numerics/filters.hpp"
@@ -20,8 +21,6 @@ constexpr double kFastGrid_Hz = 80.0;
 constexpr double kLeastDuration_s = 2.0;
 /// Prior of a constant that is added to a coefficient.
 constexpr double kConstantSigma = 0.05;
-/// Gusts faster than this are noise of the reconstruction.
-constexpr double kGustPass_Hz = 2.0;
 
 constexpr std::array<const char*, 8> kStateNames{"airspeed", "alpha", "beta", "p", "q", "r", "roll", "pitch"};
 constexpr std::array<const char*, 8> kStateUnits{"m/s", "rad", "rad", "rad/s", "rad/s", "rad/s", "rad", "rad"};
@@ -47,9 +46,7 @@ std::array<std::vector<double>, 3> air_acceleration(const FlightSignals& s) {
         Eigen::Vector3d(s.vel_north[k], s.vel_east[k], s.vel_down[k]) - R_BN.transpose() * relative;
     for (std::size_t i = 0; i < 3; ++i) wind[i][k] = air(i);
   }
-  const double rate = s.grid.rate_Hz(), pass = std::min(kGustPass_Hz, 0.2 * rate);
-  const numerics::FirKernel kernel =
-      numerics::low_pass_differentiator({.rate_Hz = rate, .pass_Hz = pass, .stop_Hz = 2.0 * pass});
+  const numerics::FirKernel kernel = gust_differentiator(s.grid.rate_Hz());
   for (auto& w : wind) w = numerics::filter(w, kernel);
   for (std::size_t k = 0; k < n; ++k) {
     const Eigen::Matrix3d R_BN = numerics::R_body_from_ned(s.roll[k], s.pitch[k], s.yaw[k]);
@@ -112,7 +109,7 @@ void OutputErrorModel::add_flight(const FlownSpans& flight, std::size_t number) 
     const auto [first, last] = signals.indices(span);
     std::size_t begin = first;
     for (std::size_t k = first; k < last; ++k) {
-      if (complete(inputs_at(signals, subject_, air, k))) continue;
+      if (complete(inputs_at(signals, air, k))) continue;
       add_segment(flight, number, air, begin, k);
       begin = k + 1;
     }
@@ -120,8 +117,8 @@ void OutputErrorModel::add_flight(const FlownSpans& flight, std::size_t number) 
   }
 }
 
-OutputErrorModel::GridInputs OutputErrorModel::inputs_at(const FlightSignals& signals, const Subject& subject,
-                                                         const AirAcceleration& air, std::size_t k) {
+OutputErrorModel::GridInputs OutputErrorModel::inputs_at(const FlightSignals& signals, const AirAcceleration& air,
+                                                         std::size_t k) const {
   using F = FlightSignal;
   GridInputs d;
   const FlightSample<double> s = signals.sample(k);
@@ -133,7 +130,9 @@ OutputErrorModel::GridInputs OutputErrorModel::inputs_at(const FlightSignals& si
   d.thrust = s[F::kThrust];
   d.torque = signals.torque.empty() ? 0.0 : signals.torque[k];
   d.rho = signals.air_density[k];
-  d.measured = measured_coefficients(s, subject, d.rho, d.torque);
+  if (simulation_.own_thrust && !signals.thrust_per_airspeed.empty())
+    d.thrust_per_airspeed = signals.thrust_per_airspeed[k];
+  d.measured = measured_coefficients(s, subject_, d.rho, d.torque);
   d.force = {s[F::kAx], s[F::kAy], s[F::kAz]};
   if (!air[0].empty()) d.air_acceleration = {air[0][k], air[1][k], air[2][k]};
   return d;
@@ -158,6 +157,7 @@ OutputErrorModel::GridInputs OutputErrorModel::between(const GridInputs& a, cons
   m.dr = mean(a.dr, b.dr);
   m.thrust = mean(a.thrust, b.thrust);
   m.torque = mean(a.torque, b.torque);
+  m.thrust_per_airspeed = mean(a.thrust_per_airspeed, b.thrust_per_airspeed);
   m.rho = mean(a.rho, b.rho);
   m.measured.CL = mean(a.measured.CL, b.measured.CL);
   m.measured.CD = mean(a.measured.CD, b.measured.CD);
@@ -173,7 +173,7 @@ void OutputErrorModel::add_segment(const FlownSpans& flight, std::size_t number,
                                    std::size_t begin, std::size_t end) {
   const FlightSignals& signals = flight.signals;
   if (static_cast<double>(end - begin) * signals.grid.step < kLeastDuration_s) return;
-  const auto at = [&](std::size_t k) { return inputs_at(signals, subject_, air, k); };
+  const auto at = [&](std::size_t k) { return inputs_at(signals, air, k); };
   Segment segment;
   segment.begin = inputs_.size();
   segment.from_s = signals.grid.at(begin);
@@ -226,6 +226,25 @@ Eigen::Index OutputErrorModel::samples_before_divergence(std::size_t segment, co
   Eigen::Index flown = 0;
   while (flown < output.rows() && output.row(flown).allFinite()) ++flown;
   return flown;
+}
+
+std::vector<estimation::RowMatrix> OutputErrorModel::disturbances(std::size_t segment,
+                                                                  const Eigen::VectorXd& theta) const {
+  // The difference between two simulations needs no fine steps.
+  constexpr double kStep_s = 0.01;
+  const int steps = std::max(1, static_cast<int>(std::ceil(step_ / kStep_s - 1e-9)));
+  const auto rows = samples(segment), columns = signed_index(outputs_.size()),
+             states = signed_index(forecast_outputs());
+  std::vector<estimation::RowMatrix> changes(draw_air_ ? air_draws_ : 0);
+  estimation::RowMatrix calm(rows, columns), drawn(rows, columns);
+  if (changes.empty() || !simulate_in(segment, theta, {}, steps, calm)) return changes;
+  for (std::size_t draw = 0; draw < changes.size(); ++draw) {
+    const std::vector<std::array<double, 3>> air =
+        draw_air_(segment, draw, 2 * static_cast<std::size_t>(rows) - 1, 0.5 * step_);
+    if (!simulate_in(segment, theta, air, steps, drawn)) continue;
+    changes[draw] = (drawn - calm).leftCols(states);
+  }
+  return changes;
 }
 
 void OutputErrorModel::shorten(std::size_t segment, Eigen::Index samples) {

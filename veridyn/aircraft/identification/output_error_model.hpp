@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "veridyn/aircraft/identification/flight_signals.hpp"
@@ -48,6 +50,9 @@ class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel, 8, e
   struct Simulation {
     bool fixed_parameters = false;  ///< parameters stay at their values: only initial conditions are unknowns
     bool stall = false;             ///< CL and CD with the subject's stall blend, as a simulator flies them
+    /// The thrust is that at the simulated airspeed, where it was computed from the throttle; false: at the measured
+    /// one.
+    bool own_thrust = false;
     /// Constants of each segment that are added to these coefficients, where they are modelled; they follow its initial
     /// state among the initial conditions.
     std::vector<Coefficient> offsets = {};
@@ -92,10 +97,22 @@ class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel, 8, e
                                                        const Eigen::VectorXd& theta) const override;
   /// Leaves the first `samples` of a segment. @param samples  at most those that it has
   void shorten(std::size_t segment, Eigen::Index samples) override;
+  /// How fast air that is not among the inputs changes its velocity [m/s^2, body axes] in one draw, at points `step_s`
+  /// apart from the begin of a segment on; of fewer points the first of the same.
+  using AirDraw = std::function<std::vector<std::array<double, 3>>(std::size_t segment, std::size_t draw,
+                                                                   std::size_t points, double step_s)>;
+  void set_air_draws(std::size_t count, AirDraw draw) {
+    air_draws_ = count;
+    draw_air_ = std::move(draw);
+  }
+  [[nodiscard]] std::vector<estimation::RowMatrix> disturbances(std::size_t segment,
+                                                                const Eigen::VectorXd& theta) const override;
 
   template <typename Scalar>
   bool simulate(std::size_t segment, const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& theta,
-                Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& output) const;
+                Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& output) const {
+    return simulate_in(segment, theta, {}, simulation_.steps_per_sample, output);
+  }
 
  private:
   static constexpr std::size_t kStates = 8;
@@ -106,6 +123,7 @@ class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel, 8, e
   struct GridInputs {
     State<double> state{};
     double de = 0.0, da = 0.0, dr = 0.0, thrust = 0.0, torque = 0.0, rho = 1.225;
+    double thrust_per_airspeed = 0.0;
     AeroCoefficients<double> measured;
     std::array<double, 3> force{};  // specific force, measured
     std::array<double, 3> air_acceleration{};
@@ -125,8 +143,7 @@ class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel, 8, e
     std::array<Scalar, 3> force;  // specific force, body axes
   };
 
-  [[nodiscard]] static GridInputs inputs_at(const FlightSignals& signals, const Subject& subject,
-                                            const AirAcceleration& air, std::size_t k);
+  [[nodiscard]] GridInputs inputs_at(const FlightSignals& signals, const AirAcceleration& air, std::size_t k) const;
   [[nodiscard]] static bool complete(const GridInputs& inputs);
   /// On the line from `a` (share 0) to `b` (share 1).
   [[nodiscard]] static GridInputs between(const GridInputs& a, const GridInputs& b, double share);
@@ -134,6 +151,11 @@ class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel, 8, e
   void add_segment(const FlownSpans& flight, std::size_t number, const AirAcceleration& air, std::size_t begin,
                    std::size_t end);
   void add_flight(const FlownSpans& flight, std::size_t number);
+  /// @param air  acceleration of the air in addition to that of the inputs, at each of them; empty: none
+  template <typename Scalar>
+  bool simulate_in(std::size_t segment, const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& theta,
+                   std::span<const std::array<double, 3>> air, int steps_per_sample,
+                   Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& output) const;
   /// @param parameters  of all coefficients, then the constants that are added to some
   template <typename Scalar>
   [[nodiscard]] Rates<Scalar> rates(State<Scalar> x, const GridInputs& inputs,
@@ -163,6 +185,8 @@ class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel, 8, e
   std::vector<estimation::ModelOutput> outputs_;
   std::vector<GridInputs> inputs_;
   std::vector<Segment> segments_;
+  std::size_t air_draws_ = 0;
+  AirDraw draw_air_;
   double step_ = 0.02;  // of the integration [s]
   double gravity_ = kGravity;
 };
@@ -188,7 +212,8 @@ OutputErrorModel::Rates<Scalar> OutputErrorModel::rates(State<Scalar> x, const G
   v.de = Scalar(inputs.de);
   v.da = Scalar(inputs.da);
   v.dr = Scalar(inputs.dr);
-  v.CT = Scalar(inputs.thrust) / qS;
+  const Scalar T = Scalar(inputs.thrust) + Scalar(inputs.thrust_per_airspeed) * (Va - Scalar(inputs.state[kVa]));
+  v.CT = T / qS;
   v.Va = Va;
   const auto value = [&](Coefficient c) -> Scalar {
     const CoefficientModel* model = modelled(c);
@@ -213,7 +238,6 @@ OutputErrorModel::Rates<Scalar> OutputErrorModel::rates(State<Scalar> x, const G
   }
   const Scalar ca = cos(alpha), sa = sin(alpha), cb = cos(beta), sb = sin(beta);
   const Scalar cphi = cos(phi), sphi = sin(phi), cth = cos(theta), sth = sin(theta);
-  const Scalar T(inputs.thrust);
   const std::array<Scalar, 3> aero{qS * (CL * sa - CD * ca), qS * CY, qS * (-CD * sa - CL * ca)};
   Rates<Scalar> out;
   const Scalar m(subject_.mass), g(gravity_);
@@ -272,8 +296,10 @@ OutputErrorModel::State<Scalar> OutputErrorModel::step(const State<Scalar>& x, c
 }
 
 template <typename Scalar>
-bool OutputErrorModel::simulate(std::size_t segment, const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& theta,
-                                Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& output) const {
+bool OutputErrorModel::simulate_in(
+    std::size_t segment, const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& theta,
+    std::span<const std::array<double, 3>> air, int steps_per_sample,
+    Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& output) const {
   constexpr double kLargest_rad = 80.0 * kDegree;
   constexpr double kSlowest_mps = 2.0;
   const Segment& s = segments_[segment];
@@ -285,8 +311,14 @@ bool OutputErrorModel::simulate(std::size_t segment, const Eigen::Matrix<Scalar,
   State<Scalar> x;
   auto initial = shared;
   for (std::size_t i = 0; i < kStates; ++i) x[i] = simulated_[i] ? theta(initial++) : Scalar(0.0);
+  const auto input = [&](std::size_t i) {
+    GridInputs in = inputs_[s.begin + i];
+    if (!air.empty())
+      for (std::size_t axis = 0; axis < 3; ++axis) in.air_acceleration[axis] += air[i][axis];
+    return in;
+  };
   for (Eigen::Index k = 0; k < s.samples; ++k) {
-    const GridInputs& now = inputs_[s.begin + 2 * static_cast<std::size_t>(k)];
+    const GridInputs now = input(2 * static_cast<std::size_t>(k));
     hold_measured(x, now);
     const bool sane = x[kVa] > Scalar(kSlowest_mps) && x[kAlphaState] < Scalar(kLargest_rad) &&
                       x[kAlphaState] > Scalar(-kLargest_rad) && x[kBetaState] < Scalar(kLargest_rad) &&
@@ -300,9 +332,9 @@ bool OutputErrorModel::simulate(std::size_t segment, const Eigen::Matrix<Scalar,
     for (std::size_t i = 0; i < 3; ++i)
       if (forces_[i]) output(k, column++) = k1.force[i];
     if (k + 1 == s.samples) break;
-    const GridInputs& mid = inputs_[s.begin + 2 * static_cast<std::size_t>(k) + 1];
-    const GridInputs& next = inputs_[s.begin + 2 * static_cast<std::size_t>(k) + 2];
-    const int steps = std::max(1, simulation_.steps_per_sample);
+    const GridInputs mid = input(2 * static_cast<std::size_t>(k) + 1);
+    const GridInputs next = input(2 * static_cast<std::size_t>(k) + 2);
+    const int steps = std::max(1, steps_per_sample);
     if (steps == 1) {
       x = step(x, k1, mid, next, step_, parameters);
       continue;

@@ -31,7 +31,8 @@ Index samples_inside(const Eigen::VectorXd& error, const Eigen::VectorXd& sigma,
 }
 
 /// Standard deviations of measured less predicted.
-RowMatrix sigmas(const OpenLoopResponse& response, const OpenLoopStart& start, const OpenLoopProblem& problem) {
+RowMatrix sigmas(const OpenLoopResponse& response, std::span<const RowMatrix> draws, const OpenLoopStart& start,
+                 const OpenLoopProblem& problem) {
   const Index states = response.states.cols();
   RowMatrix sigma(response.states.rows(), states);
   for (Index k = 0; k < sigma.rows(); ++k) {
@@ -41,10 +42,21 @@ RowMatrix sigmas(const OpenLoopResponse& response, const OpenLoopStart& start, c
       const double parameters = g.row(j).dot(problem.covariance * g.row(j).transpose());
       const double beginning = S.row(j).dot(start.covariance * S.row(j).transpose());
       const double white = problem.errors[j].white, lasting = problem.errors[j].lasting;
-      sigma(k, j) = std::sqrt(std::max(0.0, parameters) + std::max(0.0, beginning) + white * white + lasting * lasting);
+      sigma(k, j) = std::max(0.0, parameters) + std::max(0.0, beginning) + white * white + lasting * lasting;
     }
   }
-  return sigma;
+  const auto drawn = [&](std::size_t d) {
+    return draws[d].rows() > 0 && start.with_draws.col(signed_index(d)).allFinite();
+  };
+  double count = 0.0;
+  for (std::size_t d = 0; d < draws.size(); ++d) count += drawn(d) ? 1.0 : 0.0;
+  for (std::size_t d = 0; d < draws.size(); ++d) {
+    if (!drawn(d)) continue;
+    const Eigen::VectorXd made_up = response.conditions * start.with_draws.col(signed_index(d));
+    for (Index k = 0; k < sigma.rows(); ++k)
+      for (Index j = 0; j < states; ++j) sigma(k, j) += std::pow(draws[d](k, j) + made_up(k * states + j), 2.0) / count;
+  }
+  return sigma.cwiseSqrt();
 }
 
 OpenLoopForecast forecast(OpenLoopModel& model, std::size_t segment, const OpenLoopStart& start,
@@ -68,7 +80,7 @@ OpenLoopForecast forecast(OpenLoopModel& model, std::size_t segment, const OpenL
   const Index n = response.states.rows();
   out.measured = measured.topLeftCorner(n, states);
   out.predicted = response.states;
-  out.sigma = sigmas(response, start, problem);
+  out.sigma = sigmas(response, model.disturbances(segment, start.theta), start, problem);
   for (Index k = 0; k < n; ++k) out.time.push_back(window.span.begin + interval * static_cast<double>(k));
   window.first_left_s = kInfinity;
   const auto from = static_cast<Index>(std::round(problem.start_s / interval));

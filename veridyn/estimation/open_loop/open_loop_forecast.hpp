@@ -50,11 +50,12 @@ struct OpenLoopStart {
   Eigen::VectorXd theta;            ///< parameters, initial state, offsets
   Eigen::MatrixXd covariance;       ///< of initial state and offsets where the parameters are right
   Eigen::MatrixXd with_parameters;  ///< their change with the parameters, as they are fitted again
+  Eigen::MatrixXd with_draws;       ///< their error by each draw of the disturbances, fitted without it
 };
 
 /// Initial states and offsets of all windows of a model whose parameters are fixed, from their first seconds: by output
 /// error with the errors given. An error that lasts counts as one observation in its memory, and in those seconds at
-/// least.
+/// least; so does what the disturbances do there.
 /// @param first  the model, shortened here to those seconds
 [[nodiscard]] std::vector<OpenLoopStart> open_loop_starts(OpenLoopModel& first, const OpenLoopProblem& problem,
                                                           Progress& progress);
@@ -64,11 +65,13 @@ struct OpenLoopStart {
 ///
 /// The band of an output is +-1.96 sigma of measured less predicted,
 ///
-///     sigma^2 = g P g' + S_x P_x S_x' + R,   g = S_theta - S_x P_x A_x' W A_theta
+///     sigma^2 = g P g' + S_x P_x S_x' + R + mean of d^2,   g = S_theta - S_x P_x A_x' W A_theta
 ///
 /// with the parameters' covariance P, the information A_x' W A_x = P_x^-1 of the first seconds about initial state and
 /// offsets, their priors among it, the sensitivities S of the prediction and A of those seconds, and the errors R of
-/// what is measured: so an error of a parameter that the initial state made up for does not count twice. The band
+/// what is measured: so an error of a parameter that the initial state made up for does not count twice. d is what a
+/// draw of the model's disturbances does to the forecast, less what the initial state, which they disturb too, makes up
+/// for: S_d - S_x P_x A_x' W A_d. The band
 /// counts as left where the error of the next half second exceeds three sigma (RMS): 5 % of the samples are outside of
 /// a right band, and a state that leaves may cross it again.
 ///

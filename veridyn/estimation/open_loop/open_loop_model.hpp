@@ -27,6 +27,13 @@ class OpenLoopModel : public ParametricModel {
                                                                const Eigen::VectorXd& theta) const = 0;
   /// Leaves the first `samples` of a segment. @param samples  at most those that it has
   virtual void shorten(std::size_t segment, Eigen::Index samples) = 0;
+  /// By how much each of several draws of what acts on the model and is not among its inputs changes what is forecast
+  /// of a segment: a row a sample; those of a shortened segment are the first of the same. A draw that diverges is
+  /// empty. None where nothing is known to act.
+  [[nodiscard]] virtual std::vector<RowMatrix> disturbances(std::size_t /*segment*/,
+                                                            const Eigen::VectorXd& /*theta*/) const {
+    return {};
+  }
 };
 
 }  // namespace veridyn::estimation

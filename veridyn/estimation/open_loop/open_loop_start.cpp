@@ -38,11 +38,40 @@ void add_covariance(const OpenLoopModel& model, std::size_t segment, const Eigen
     }
   }
   const Eigen::LDLT<Eigen::MatrixXd> solver(information);
+  const std::vector<RowMatrix> draws = model.disturbances(segment, start.theta);
+  start.with_draws = Eigen::MatrixXd::Constant(own, signed_index(draws.size()), kNaN);
+  for (std::size_t d = 0; d < draws.size(); ++d) {
+    if (draws[d].rows() == 0 || r.states.rows() == 0) continue;
+    Eigen::VectorXd pull = Eigen::VectorXd::Zero(own);
+    for (const Index k : rows)
+      pull +=
+          r.conditions.middleRows(k * states, states).transpose() * weights.cwiseProduct(draws[d].row(k).transpose());
+    start.with_draws.col(signed_index(d)) = -solver.solve(pull);
+  }
   start.covariance = solver.solve(Eigen::MatrixXd::Identity(own, own));
   start.with_parameters = -solver.solve(cross);
   for (Index i = 0; i < own; ++i)
     if (std::ranges::find(problem.drifting, conditions[i].name) != problem.drifting.end())
       start.covariance(i, i) += std::pow(conditions[i].prior_sigma, 2.0);
+}
+
+/// What the disturbances do to each output, as an error of independent rows: [SI]^2.
+Eigen::VectorXd disturbed_variance(const OpenLoopModel& model, std::span<const OpenLoopStart> starts,
+                                   const std::vector<std::vector<Index>>& rows) {
+  const auto states = signed_index(model.forecast_outputs());
+  // Of a sum over the rows, whose variance is what counts: rows in which one gust lasts are fewer than they look.
+  Eigen::VectorXd of_sums = Eigen::VectorXd::Zero(states);
+  double count = 0.0;
+  for (std::size_t s = 0; s < model.segments(); ++s) {
+    for (const RowMatrix& draw : model.disturbances(s, starts[s].theta)) {
+      if (draw.rows() == 0) continue;
+      Eigen::VectorXd sum = Eigen::VectorXd::Zero(states);
+      for (const Index k : rows[s]) sum += draw.row(k).transpose();
+      of_sums += sum.cwiseAbs2();
+      count += static_cast<double>(rows[s].size());
+    }
+  }
+  return count > 0.0 ? Eigen::VectorXd(of_sums / count) : of_sums;
 }
 
 }  // namespace
@@ -55,7 +84,7 @@ std::vector<OpenLoopStart> open_loop_starts(OpenLoopModel& first, const OpenLoop
   std::vector<OpenLoopStart> starts;
   std::size_t most = 0;
   for (std::size_t s = 0; s < first.segments(); ++s) {
-    starts.push_back({.theta = unfitted(first, s), .covariance = {}, .with_parameters = {}});
+    starts.push_back({.theta = unfitted(first, s), .covariance = {}, .with_parameters = {}, .with_draws = {}});
     const auto wanted = static_cast<Index>(std::round(problem.start_s / first.sample_interval_s())) + 1;
     first.shorten(s, std::min(wanted, first.samples(s)));
     first.shorten(s, std::max<Index>(1, first.samples_before_divergence(s, starts[s].theta)));
@@ -76,6 +105,9 @@ std::vector<OpenLoopStart> open_loop_starts(OpenLoopModel& first, const OpenLoop
         std::clamp(error.memory / static_cast<double>(problem.stride), 1.0, std::max(1.0, static_cast<double>(most)));
     fit.noise_start(j) = std::hypot(error.white, error.lasting * std::sqrt(alike));
   }
+  const Eigen::VectorXd disturbed = disturbed_variance(first, starts, rows);
+  for (Index j = 0; j < states; ++j)
+    fit.noise_start(j) = std::sqrt(fit.noise_start(j) * fit.noise_start(j) + disturbed(j));
   const OutputErrorEstimate fitted = output_error(first, measured, fit, progress);
   if (fitted.has_estimate()) {
     std::vector<Index> place(first.segments(), first.parameters().size());
