@@ -121,6 +121,23 @@ TEST(RecordingEvidence, NamesWhatTheClocksShow) {
   EXPECT_EQ(find(rows_with(servo), "alpha", Outcome::kCare), nullptr) << texts(rows_with(servo));
 }
 
+TEST(RecordingEvidence, SaysWhereAVanesDelayCannotBeSeen) {
+  Segments segments;
+  segments.airborne = {{5.0, 115.0}};
+  const auto row = [&](const char* vane, double delay_s, double sigma_s, bool applied) {
+    const auto rows = recording_evidence(flown().measured, clean_reconstruction(), reference_options(), segments,
+                                         std::vector<DelayReport>{{vane, "lift", delay_s, sigma_s, 0.99, applied, ""}});
+    const auto of_vane = std::ranges::find(rows, "delay of a vane", [](const FlightEvidence& r) { return r.row.name; });
+    return of_vane == rows.end() ? std::string() : of_vane->row.text;
+  };
+  EXPECT_THAT(row("alpha", 0.149, 0.145, false),
+              ::testing::HasSubstr("how late the alpha vane is cannot be seen (0.149 +- 0.145"));
+  EXPECT_THAT(row("beta", 0.0, 0.02, false), HasSubstr("beta vane"));
+  EXPECT_EQ(row("alpha", 0.005, 0.005, false), "");
+  EXPECT_EQ(row("alpha", 0.2, 0.03, true), "") << "taken off";
+  EXPECT_EQ(row("gps", 0.1, 0.1, false), "");
+}
+
 TEST(RecordingEvidence, SaysWhichSurfacesHaveNoDelayOfTheirOwn) {
   Segments segments;
   segments.airborne = {{5.0, 115.0}};

@@ -52,6 +52,36 @@ std::vector<FlightEvidence> delay_rows(std::span<const DelayReport> delays) {
   return rows;
 }
 
+/// Vanes whose delay a recording does not show: in calm air lift follows alpha, pitch rate and elevator alike, so that
+/// a late vane and other derivatives explain the same.
+std::vector<FlightEvidence> vane_delay_rows(std::span<const DelayReport> delays) {
+  constexpr double kMatters_s = 0.03;
+  std::vector<FlightEvidence> rows;
+  for (const DelayReport& report : delays) {
+    const bool alpha = report.group == "alpha";
+    if ((!alpha && report.group != "beta") || report.applied) continue;
+    const double doubt = estimation::kBeyondChance * report.sigma_s;
+    if (!(doubt > kMatters_s)) continue;
+    rows.push_back(
+        {{.name = "delay of a vane",
+          .about = report.group,
+          .outcome = Outcome::kNotVerified,
+          .value = report.sigma_s,
+          .limit = kMatters_s / estimation::kBeyondChance,
+          .scale = "s",
+          .text =
+              fmt::format("how late the {} vane is cannot be seen ({:.3f} +- {:.3f} s): it is taken as recorded, and "
+                          "what depends on {} is off by several percent where it is late by a few hundredths of a "
+                          "second",
+                          report.group, report.delay_s, report.sigma_s, report.group),
+          .bears_on = Purpose::kParameters,
+          .advice = fmt::format("measure the delay of the vane and its filter, and give it: delays.{} = \"... ms\"",
+                                report.group)},
+         alpha ? by_alpha() : by_beta()});
+  }
+  return rows;
+}
+
 /// Deflections whose single delays a recording does not show.
 std::vector<FlightEvidence> together_rows(std::span<const DelayReport> delays) {
   std::vector<FlightEvidence> rows;
@@ -313,6 +343,7 @@ std::vector<FlightEvidence> recording_evidence(const Recording& recording, const
   };
   add(std::move(found[0]));
   add(delay_rows(delays));
+  add(vane_delay_rows(delays));
   add(together_rows(delays));
   add(std::move(found[1]));
   add(missing_sensor_evidence(recording, reconstruction, segments));
