@@ -63,11 +63,10 @@ void check_flight(const FlightStudy& study) {
   const double least = study.segments.min_airspeed_mps;
   const auto [highest, what] = highest_speed(study.mapped.recording);
   if (!(highest > least)) {
-    throw InputError(
-        study.mapped.recording.source,
-        fmt::format(
-            "the aircraft never flies: the {} does not exceed {:.1f} m/s, {} needs {:.1f} m/s (key segments.min_airspeed)",
-            what, std::ceil(10.0 * highest) / 10.0, study.subject.name, least));
+    throw InputError(study.mapped.recording.source,
+                     fmt::format("the aircraft never flies: the {} does not exceed {:.1f} m/s, {} needs {:.1f} m/s "
+                                 "(key segments.min_airspeed)",
+                                 what, std::ceil(10.0 * highest) / 10.0, study.subject.name, least));
   }
 }
 

@@ -124,9 +124,10 @@ TEST(RecordingEvidence, NamesWhatTheClocksShow) {
 TEST(RecordingEvidence, SaysWhereAVanesDelayCannotBeSeen) {
   Segments segments;
   segments.airborne = {{5.0, 115.0}};
-  const auto row = [&](const char* vane, double delay_s, double sigma_s, bool applied) {
-    const auto rows = recording_evidence(flown().measured, clean_reconstruction(), reference_options(), segments,
-                                         std::vector<DelayReport>{{vane, "lift", delay_s, sigma_s, 0.99, applied, ""}});
+  const auto row = [&](const char* vane, double delay_s, double sigma_s, bool applied, const char* text = "") {
+    const auto rows =
+        recording_evidence(flown().measured, clean_reconstruction(), reference_options(), segments,
+                           std::vector<DelayReport>{{vane, "lift", delay_s, sigma_s, 0.99, applied, text}});
     const auto of_vane = std::ranges::find(rows, "delay of a vane", [](const FlightEvidence& r) { return r.row.name; });
     return of_vane == rows.end() ? std::string() : of_vane->row.text;
   };
@@ -135,6 +136,8 @@ TEST(RecordingEvidence, SaysWhereAVanesDelayCannotBeSeen) {
   EXPECT_THAT(row("beta", 0.0, 0.02, false), HasSubstr("beta vane"));
   EXPECT_EQ(row("alpha", 0.005, 0.005, false), "");
   EXPECT_EQ(row("alpha", 0.2, 0.03, true), "") << "taken off";
+  EXPECT_THAT(row("alpha", 0.0, 0.0, false, "not determined: the force explains too little"),
+              ::testing::HasSubstr("cannot be seen: it is taken as recorded"));
   EXPECT_EQ(row("gps", 0.1, 0.1, false), "");
 }
 

@@ -179,7 +179,8 @@ TEST(Loops, DerivativesRefuseThemByName) {
     static_cast<void>(SystemLinearization(system, {}, {}, 0));
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("estimation) does not know closed loops, and PointConstraint 'hinge'"));
+    EXPECT_THAT(error.what(),
+                testing::HasSubstr("estimation) does not know closed loops, and PointConstraint 'hinge'"));
   }
 }
 

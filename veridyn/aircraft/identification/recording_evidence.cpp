@@ -60,8 +60,10 @@ std::vector<FlightEvidence> vane_delay_rows(std::span<const DelayReport> delays)
   for (const DelayReport& report : delays) {
     const bool alpha = report.group == "alpha";
     if ((!alpha && report.group != "beta") || report.applied) continue;
-    const double doubt = estimation::kBeyondChance * report.sigma_s;
-    if (!(doubt > kMatters_s)) continue;
+    const bool unseen = report.text.starts_with("not determined");
+    if (!unseen && !(estimation::kBeyondChance * report.sigma_s > kMatters_s)) continue;
+    const std::string found =
+        report.sigma_s > 0.0 ? fmt::format(" ({:.3f} +- {:.3f} s)", report.delay_s, report.sigma_s) : std::string();
     rows.push_back(
         {{.name = "delay of a vane",
           .about = report.group,
@@ -69,11 +71,10 @@ std::vector<FlightEvidence> vane_delay_rows(std::span<const DelayReport> delays)
           .value = report.sigma_s,
           .limit = kMatters_s / estimation::kBeyondChance,
           .scale = "s",
-          .text =
-              fmt::format("how late the {} vane is cannot be seen ({:.3f} +- {:.3f} s): it is taken as recorded, and "
-                          "what depends on {} is off by several percent where it is late by a few hundredths of a "
-                          "second",
-                          report.group, report.delay_s, report.sigma_s, report.group),
+          .text = fmt::format(
+              "how late the {} vane is cannot be seen{}: it is taken as recorded, and what depends on {} is "
+              "off by several percent where it is late by a few hundredths of a second",
+              report.group, found, report.group),
           .bears_on = Purpose::kParameters,
           .advice = fmt::format("measure the delay of the vane and its filter, and give it: delays.{} = \"... ms\"",
                                 report.group)},
