@@ -367,34 +367,6 @@ TEST_F(Program, FindsACalmFlightNotExcited) {
   EXPECT_THAT(estimate.verdict, HasSubstr("not excited: CL, CD, CY, Cl, Cm, Cn"));
 }
 
-// The Thor flight is closed loop in strong wind, without manoeuvres made for identification: published derivatives are
-// not recovered from it by anyone's regression, and the tool has to say so.
-TEST_F(Program, RejectsTheThorFlight) {
-  const fs::path study = test::source_folder() / "examples/studies/real/thor.toml";
-  if (!fs::exists(test::shared_folder() / "data/flight/umn_thor/thor_flight75_airborne.csv"))
-    GTEST_SKIP() << "the recordings beside the repository are missing";
-  const Outcome done = run("identify " + study.string() + " --out " + (folder_ / "out").string());
-  ASSERT_EQ(done.exit_code, 0) << done.text;
-  const estimation::Estimate estimate = io::read_estimate(folder_ / "out" / "estimate.json");
-  for (const auto& p : estimate.parameters)
-    EXPECT_NE(p.status, estimation::ParameterStatus::kIdentified) << p.name << " = " << p.value;
-}
-
-// Neither accelerometer nor vanes, and a pitot tube that fails for seconds: the moments are regressed, and rejected.
-TEST_F(Program, RejectsTheProtoFlight) {
-  const fs::path study = test::source_folder() / "examples/studies/real/proto.toml";
-  if (!fs::exists(test::shared_folder() / "data/flight/px4/proto_flt09"))
-    GTEST_SKIP() << "the recordings beside the repository are missing";
-  const Outcome done = run("identify " + study.string() + " --out " + (folder_ / "out").string());
-  ASSERT_EQ(done.exit_code, 0) << done.text;
-  const estimation::Estimate estimate = io::read_estimate(folder_ / "out" / "estimate.json");
-  EXPECT_EQ(estimate.parameters.size(), 12U);
-  for (const auto& p : estimate.parameters)
-    EXPECT_EQ(p.status, estimation::ParameterStatus::kRejected) << p.name << " = " << p.value;
-  EXPECT_THAT(estimate.warnings, ::testing::Contains(HasSubstr("as of a stall or a blocked pitot tube")));
-  EXPECT_THAT(done.text, HasSubstr("by the headings flown (1.00"));
-}
-
 // An accelerometer without gravity: by dead reckoning the aircraft would fall at 880 m/s.
 TEST_F(Program, IdentifiesNothingWhereTheSensorsContradictEachOther) {
   const std::string flight = file("flight.toml", kFlight);
@@ -416,22 +388,6 @@ TEST_F(Program, IdentifiesNothingWhereTheSensorsContradictEachOther) {
   EXPECT_EQ(reconstructed.exit_code, 1) << reconstructed.text;
   EXPECT_THAT(reconstructed.text, HasSubstr("vel_down contradicts accelerometer and attitude"));
   EXPECT_THAT(read_file(folder_ / "motion" / "report.html"), HasSubstr("Contradiction"));
-}
-
-// Every real flight log is read, or refused in one sentence.
-TEST_F(Program, InspectsEveryRealLogOrSaysWhyNot) {
-  const fs::path logs = test::shared_folder() / "data/flight";
-  if (!fs::exists(logs)) GTEST_SKIP() << "the recordings beside the repository are missing";
-  std::size_t read = 0;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(logs)) {
-    const std::string extension = entry.path().extension().string();
-    if (extension != ".bin" && extension != ".BIN" && extension != ".log" && extension != ".ulg" && extension != ".mat")
-      continue;
-    const Outcome outcome = run("inspect \"" + entry.path().string() + "\"");
-    EXPECT_EQ(outcome.exit_code, 0) << entry.path() << outcome.text.substr(0, 300);
-    ++read;
-  }
-  EXPECT_GE(read, 8u);
 }
 
 TEST_F(Program, IdentifiesTheInertiaOfASwingTest) {

@@ -109,10 +109,8 @@ Table innovation_table(const Reconstruction& rec) {
       .title = "Innovations",
       .caption =
           "Noise: the sensor's, as assumed (1 sigma). NIS: mean square of the innovations in units of what the filter "
-          "expected; 1 when the assumed "
-          "noise is right, above when "
-          "the sensor is worse than assumed. Lag 1: autocorrelation, 0 when white. Mean, rms and the rms that the "
-          "filter expected are in the sensor's unit.",
+          "expected; 1 when the assumed noise is right, above when the sensor is worse than assumed. Lag 1: "
+          "autocorrelation, 0 when white. Mean, rms and the rms that the filter expected are in the sensor's unit.",
       .columns = {{.name = "Sensor"},
                   {.name = "Noise", .digits = 3},
                   {.name = "Mean", .digits = 2},
