@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 #include <span>
@@ -88,31 +89,62 @@ TEST(BodyForces, OfAPointSpringAreTheSlopesOfItsEnergy) {
       1e-7);
 }
 
-TEST(BodyForces, OfABushingAreTheSlopesOfItsEnergyAndItsDampersDissipate) {
+/// Between the two bodies, with dampers.
+Bushing placed_bushing() {
   Bushing b;
   b.body_1 = 2;
   b.body_2 = 1;
   b.frame_1 = {body_fixed_xyz({0.2, -0.1, 0.3}), {0.0, -0.2, 0.0}};
   b.frame_2 = {body_fixed_xyz({-0.1, 0.3, 0.1}), {0.1, 0.0, 0.05}};
-  b.rotational_stiffness = {10.0, 20.0, 30.0};
-  b.translational_stiffness = {100.0, 200.0, 300.0};
   b.rotational_damping = {1.0, 2.0, 3.0};
   b.translational_damping = {4.0, 5.0, 6.0};
+  return b;
+}
+
+/// Angles and translation of its second frame in its first.
+Eigen::Vector<double, 6> deflection(const Bushing& b, const Posed& p) {
+  const auto frame = [&](int body, const Placement& in) {
+    const Pose<double> pose = body_pose(p.mechanism, p.kinematics, body);
+    return Placement{pose.rotation * in.rotation, pose * in.translation};
+  };
+  const Placement relative = frame(b.body_1, b.frame_1).inverse() * frame(b.body_2, b.frame_2);
+  const Eigen::Matrix3d& R = relative.rotation;
+  const Eigen::Vector3d t(std::atan2(-R(1, 2), R(2, 2)), std::asin(R(0, 2)), std::atan2(-R(0, 1), R(0, 0)));
+  EXPECT_NEAR((body_fixed_xyz(t) - R).norm(), 0.0, 1e-12);
+  Eigen::Vector<double, 6> all;
+  all << t, relative.translation;
+  return all;
+}
+
+TEST(BodyForces, OfABushingAreTheSlopesOfItsEnergyAndItsDampersDissipate) {
+  Bushing b = placed_bushing();
+  b.set_stiffness({10.0, 20.0, 30.0}, {100.0, 200.0, 300.0});
+  BodyForces all;
+  all.bushings.push_back(b);
+  const Eigen::Vector<double, 6> stiffness{10.0, 20.0, 30.0, 100.0, 200.0, 300.0};
+  expect_energy(
+      all, [&](const Posed& p) { return 0.5 * deflection(b, p).cwiseAbs2().dot(stiffness); }, 1e-7);
+}
+
+TEST(BodyForces, OfABushingOfFunctionsAreTheSlopesOfTheirIntegrals) {
+  Bushing b = placed_bushing();
+  for (std::size_t i = 0; i < 6; ++i) {
+    // Stiffening, stronger to one side, with a pull at rest.
+    const double k = 10.0 * (1.0 + static_cast<double>(i));
+    b.resistance[i] = numerics::PiecewisePolynomial::polynomial(std::array{0.1 * k, k, 0.5 * k, 3.0 * k});
+  }
   BodyForces all;
   all.bushings.push_back(b);
   expect_energy(
       all,
       [&](const Posed& p) {
-        const auto frame = [&](int body, const Placement& in) {
-          const Pose<double> pose = body_pose(p.mechanism, p.kinematics, body);
-          return Placement{pose.rotation * in.rotation, pose * in.translation};
-        };
-        const Placement relative = frame(2, b.frame_1).inverse() * frame(1, b.frame_2);
-        const Eigen::Matrix3d& R = relative.rotation;
-        const Eigen::Vector3d t(std::atan2(-R(1, 2), R(2, 2)), std::asin(R(0, 2)), std::atan2(-R(0, 1), R(0, 0)));
-        EXPECT_NEAR((body_fixed_xyz(t) - R).norm(), 0.0, 1e-12);
-        return 0.5 * (t.cwiseAbs2().dot(b.rotational_stiffness) +
-                      relative.translation.cwiseAbs2().dot(b.translational_stiffness));
+        const Eigen::Vector<double, 6> x = deflection(b, p);
+        double energy = 0.0;
+        for (std::size_t i = 0; i < 6; ++i) {
+          const double k = 10.0 * (1.0 + static_cast<double>(i)), d = x(static_cast<int>(i));
+          energy += k * d * (0.1 + d * (0.5 + d * (0.5 / 3.0 + d * 0.75)));
+        }
+        return energy;
       },
       1e-7);
 }

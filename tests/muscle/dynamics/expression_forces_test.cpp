@@ -52,8 +52,7 @@ TEST(ExpressionForces, OfALinearFormulaAreThoseOfTheSpringAndOfTheBushing) {
     by_formula.resistance.emplace_back(
         text, std::vector<std::string>{"theta_x", "theta_y", "theta_z", "delta_x", "delta_y", "delta_z"});
   formulas.bushings.push_back(std::move(by_formula));
-  bushing.rotational_stiffness = {5.0, 6.0, 7.0};
-  bushing.translational_stiffness = {80.0, 90.0, 100.0};
+  bushing.set_stiffness({5.0, 6.0, 7.0}, {80.0, 90.0, 100.0});
   springs.bushings.push_back(bushing);
   Kinematics<double> kinematics(mechanism);
   for (int trial = 0; trial < 10; ++trial) {

@@ -71,11 +71,32 @@ TEST(OsimForce, ABushingIsReadWithItsFrames) {
   EXPECT_EQ(b.body_1, 0);
   EXPECT_EQ(b.body_2, 1);
   EXPECT_EQ(b.frame_2.translation, Eigen::Vector3d(0.0, 0.1, 0.0));
-  EXPECT_EQ(b.rotational_stiffness, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(b.resistance[1].evaluate(0.5).value, 1.0);
+  EXPECT_EQ(b.resistance[4].evaluate(0.5).value, 0.0);
   EXPECT_EQ(b.translational_damping, Eigen::Vector3d(4, 5, 6));
   EXPECT_THAT(error_of("<BushingForce name=\"b\"><socket_frame1>/ground</socket_frame1><socket_frame2>bar"
                        "</socket_frame2><rotational_stiffness>-1 0 0</rotational_stiffness></BushingForce>"),
               HasSubstr("BushingForce 'b': rotational_stiffness"));
+}
+
+TEST(OsimForce, ABushingOfFunctionsIsReadAndOneWithDampersIsWarnedOf) {
+  const std::string bushing =
+      "<FunctionBasedBushingForce name=\"disc\"><socket_frame1>/ground</socket_frame1><socket_frame2>/bodyset/bar"
+      "</socket_frame2><SimmSpline name=\"m_z_theta_z_function\"><x>-1 0 1</x><y>-8 0 4</y></SimmSpline>"
+      "<f_x_delta_x_function><LinearFunction><coefficients>7 1</coefficients></LinearFunction></f_x_delta_x_function>"
+      "{}</FunctionBasedBushingForce>";
+  const Model model = with_forces(fmt::format(fmt::runtime(bushing), ""));
+  EXPECT_TRUE(model.unsupported.empty());
+  EXPECT_TRUE(model.warnings.empty());
+  ASSERT_EQ(model.body_forces.bushings.size(), 1U);
+  const Bushing& b = model.body_forces.bushings[0];
+  EXPECT_DOUBLE_EQ(b.resistance[2].evaluate(-1.0).value, -8.0);
+  EXPECT_DOUBLE_EQ(b.resistance[3].evaluate(2.0).value, 15.0);
+  EXPECT_EQ(b.resistance[0].evaluate(0.3).value, 0.0);
+  const Model damped =
+      with_forces(fmt::format(fmt::runtime(bushing), "<rotational_damping>0 0 2</rotational_damping>"));
+  ASSERT_EQ(damped.warnings.size(), 1U);
+  EXPECT_THAT(damped.warnings[0], HasSubstr("'disc': its damping counts here; OpenSim reads it and applies none"));
 }
 
 TEST(OsimForce, ABushingOfFormatsBeforeFourNamesItsBodies) {

@@ -209,5 +209,29 @@ TEST(OsimReader, JointsThatGoRoundInACircleAreRefused) {
   EXPECT_THAT(joint_error(frames), HasSubstr("circle"));
 }
 
+TEST(OsimJoint, ACoordinateThatAConstantPrescribesIsHeldAndAMotionOverTimeIsNamed) {
+  const auto pin = [](const std::string& function, const std::string& flags = "<prescribed>true</prescribed>") {
+    return read_joint("PinJoint", "<coordinates><Coordinate name=\"angle\"><default_value>0.1</default_value>" + flags +
+                                      "<prescribed_function>" + function + "</prescribed_function></Coordinate>" +
+                                      "</coordinates>");
+  };
+  const Model held = pin("<Constant><value>0.4</value></Constant>");
+  EXPECT_TRUE(held.coordinates[0].locked);
+  EXPECT_EQ(held.coordinates[0].default_value, 0.4);
+  ASSERT_EQ(held.warnings.size(), 1U);
+  EXPECT_THAT(held.warnings[0], HasSubstr("Coordinate 'angle': its prescribed_function holds it at 0.4"));
+  const std::string line = "<LinearFunction><coefficients>1 0</coefficients></LinearFunction>";
+  const Model moving = pin(line);
+  ASSERT_EQ(moving.unsupported.size(), 1U);
+  EXPECT_EQ(moving.unsupported[0].element, "prescribed_function");
+  EXPECT_EQ(moving.unsupported[0].name, "angle");
+  EXPECT_TRUE(moving.unsupported[0].changes_motion);
+  for (const char* flags : {"<prescribed>false</prescribed>", "<prescribed>true</prescribed><locked>true</locked>"}) {
+    const Model other = pin(line, flags);
+    EXPECT_TRUE(other.unsupported.empty());
+    EXPECT_EQ(other.coordinates[0].default_value, 0.1);
+  }
+}
+
 }  // namespace
 }  // namespace veridyn::muscle

@@ -241,6 +241,44 @@ TEST(OsimReader, EmptySocketsAreTakenFromWhatElseTheFileSays) {
   EXPECT_THAT(model.warnings[2], AllOf(HasSubstr("Marker 'free'"), HasSubstr("the ground is taken")));
 }
 
+TEST(OsimReader, WhatScriptsAddAmongTheComponentsCountsAsInItsSet) {
+  const auto model_of = [](const std::string& set, const std::string& components) {
+    return OsimFile::parse(fmt::format(R"(<OpenSimDocument Version="40500"><Model name="m">{}
+<components>{}</components></Model></OpenSimDocument>)",
+                                       set, components),
+                           "m.osim");
+  };
+  const std::string body = R"(<Body name="bar"><mass>1</mass><inertia>1 1 1 0 0 0</inertia></Body>)";
+  const std::string joint =
+      R"(<PinJoint name="pin"><socket_parent_frame>/ground</socket_parent_frame><socket_child_frame>/bar
+</socket_child_frame><coordinates><Coordinate name="angle"/></coordinates></PinJoint>)";
+  const std::string spring =
+      "<SpringGeneralizedForce name=\"s\"><coordinate>angle</coordinate><stiffness>5</stiffness>"
+      "</SpringGeneralizedForce>";
+  const std::string weld =
+      R"(<WeldConstraint name="held"><socket_frame1>/ground</socket_frame1><socket_frame2>/bar</socket_frame2>
+</WeldConstraint>)";
+  const std::string marker =
+      R"(<Marker name="tip"><socket_parent_frame>/bar</socket_parent_frame><location>0 1 0</location></Marker>)";
+  const Model model = model_of("", body + joint + spring + weld + marker).model();
+  EXPECT_EQ(model.bodies.size(), 2U);
+  EXPECT_EQ(model.joints.size(), 1U);
+  EXPECT_EQ(model.coordinate_springs.size(), 1U);
+  EXPECT_EQ(model.loops.size(), 1U);
+  ASSERT_EQ(model.markers.size(), 1U);
+  EXPECT_EQ(model.markers[0].body, 1);
+  EXPECT_TRUE(model.unsupported.empty());
+  // What is unknown may change the motion; what only reports does not.
+  const Model with_others = model_of("<BodySet><objects>" + body + "</objects></BodySet><JointSet><objects>" + joint +
+                                         "</objects></JointSet>",
+                                     "<ExoskeletonSpringDamper name=\"exo\"/><TableReporter name=\"table\"/>")
+                                .model();
+  ASSERT_EQ(with_others.unsupported.size(), 2U);
+  EXPECT_EQ(with_others.unsupported[0].name, "exo");
+  EXPECT_TRUE(with_others.unsupported[0].changes_motion);
+  EXPECT_FALSE(with_others.unsupported[1].changes_motion);
+}
+
 TEST(OsimReader, BadModelsGetOneLineThatNamesFileLineAndElement) {
   const std::string arm = arm_text();
   EXPECT_THAT(reading_error(arm.substr(0, arm.size() / 2)),

@@ -58,6 +58,21 @@ TEST(OsimWriter, AddsToTheMuscleWhatItLeftToItsDefaultsAndReadsBackTheSameDouble
   }
 }
 
+TEST(OsimWriter, WritesToAMuscleAmongTheComponents) {
+  std::string moved = built_in_text();
+  const std::string type = "</Thelen2003Muscle>";
+  const std::size_t begin = moved.rfind("<Thelen2003Muscle "), end = moved.rfind(type) + type.size();
+  const std::string muscle = moved.substr(begin, end - begin);
+  moved.erase(begin, end - begin);
+  moved.insert(moved.find("</Model>"), "<components>" + muscle + "</components>");
+  const OsimFile arm = OsimFile::parse(moved, "moved.osim");
+  ASSERT_EQ(arm.model().muscles.size(), load_model("arm").model().muscles.size());
+  Model changed = arm.model();
+  changed.muscles.back().parameters.musculotendon.max_isometric_force = 123.5;
+  const Model back = OsimFile::parse(arm.text_with(changed), "back").model();
+  EXPECT_EQ(back.muscles.back().parameters.musculotendon.max_isometric_force, 123.5);
+}
+
 TEST(OsimWriter, RefusesAMuscleThatTheFileDoesNotHave) {
   const OsimFile arm = load_model("arm");
   Model changed = arm.model();

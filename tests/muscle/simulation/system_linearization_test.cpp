@@ -122,8 +122,7 @@ TEST(SystemLinearization, OfForcesThatFollowFromTheMotion) {
   Bushing bushing;
   bushing.body_2 = forearm;
   bushing.frame_1.translation = {0.1, -0.2, 0.05};
-  bushing.rotational_stiffness = {2.0, 3.0, 4.0};
-  bushing.translational_stiffness = {30.0, 40.0, 50.0};
+  bushing.set_stiffness({2.0, 3.0, 4.0}, {30.0, 40.0, 50.0});
   bushing.rotational_damping = {0.2, 0.1, 0.3};
   bushing.translational_damping = {1.0, 2.0, 3.0};
   model.body_forces.bushings.push_back(bushing);

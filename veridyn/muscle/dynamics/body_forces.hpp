@@ -85,9 +85,10 @@ void add_force(const PointSpring& spring, const Mechanism& mechanism, const Kine
   add_pull(spring, mechanism, kinematics, tension, to);
 }
 
-/// Bushing: of frame 2 in frame 1, angles t of a body-fixed x-y-z sequence and translation d are held by linear springs
-/// and dampers, f = -K (t, d) - C (t', d'). With t' = N w (w the relative angular velocity in frame 2) the moment is
-/// N' f_t, so that the spring's energy is K (t, d)^2 / 2. Singular at a second angle of 90 deg.
+/// Bushing: of frame 2 in frame 1, angles t of a body-fixed x-y-z sequence and translation d are held by springs and
+/// linear dampers, f = -k(t, d) - C (t', d'). With t' = N w (w the relative angular velocity in frame 2) the moment is
+/// N' f_t, so that the energy of springs that each resist one deflection is the sum of the integrals of k. Singular at
+/// a second angle of 90 deg.
 ///
 /// `resist(t, d, torque, push)` takes what springs do off the generalised forces of the angles and of the translation.
 template <typename Scalar, typename Receiver, typename Resist>
@@ -120,14 +121,16 @@ void add_bushing(const Bushing& bushing, const Mechanism& mechanism, const Kinem
   add_force_at<Scalar>(mechanism, kinematics, one.link, two.position, -force, -moment, to);
 }
 
-/// With linear springs.
+/// With springs that each resist one deflection.
 template <typename Scalar, typename Receiver>
 void add_force(const Bushing& bushing, const Mechanism& mechanism, const Kinematics<Scalar>& kinematics, Receiver* to) {
   add_bushing(
       bushing, mechanism, kinematics,
       [&](const Vector3<Scalar>& t, const Vector3<Scalar>& d, Vector3<Scalar>& torque, Vector3<Scalar>& push) {
-        torque -= t.cwiseProduct(bushing.rotational_stiffness.cast<Scalar>().eval());
-        push -= d.cwiseProduct(bushing.translational_stiffness.cast<Scalar>().eval());
+        for (int i = 0; i < 3; ++i) {
+          torque(i) -= bushing.resistance[i].evaluate(t(i)).value;
+          push(i) -= bushing.resistance[i + 3].evaluate(d(i)).value;
+        }
       },
       to);
 }

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <string>
 #include <vector>
 
 #include "veridyn/muscle/model/placement.hpp"
+#include "veridyn/numerics/piecewise_polynomial.hpp"
 
 /// Forces of a model that act between bodies: `dynamics/body_forces.hpp` has their laws.
 namespace veridyn::muscle {
@@ -18,15 +20,24 @@ struct PointSpring {
   double rest_length = 0.0;                                                              ///< [m]
 };
 
-/// Linear springs and dampers between frames of two bodies (BushingForce).
+/// Springs and linear dampers between frames of two bodies (BushingForce, FunctionBasedBushingForce).
 struct Bushing {
   std::string name;
   int body_1 = 0, body_2 = 0;
-  Placement frame_1, frame_2;                                         ///< in their bodies
-  Eigen::Vector3d rotational_stiffness = Eigen::Vector3d::Zero();     ///< [N m/rad]
-  Eigen::Vector3d translational_stiffness = Eigen::Vector3d::Zero();  ///< [N/m]
-  Eigen::Vector3d rotational_damping = Eigen::Vector3d::Zero();       ///< [N m s/rad]
-  Eigen::Vector3d translational_damping = Eigen::Vector3d::Zero();    ///< [N s/m]
+  Placement frame_1, frame_2;  ///< in their bodies
+  /// What each deflection is resisted with: moments of the three angles [N m of rad], forces of the translations [N of
+  /// m]. None: 0.
+  std::array<numerics::PiecewisePolynomial, 6> resistance;
+  Eigen::Vector3d rotational_damping = Eigen::Vector3d::Zero();     ///< [N m s/rad]
+  Eigen::Vector3d translational_damping = Eigen::Vector3d::Zero();  ///< [N s/m]
+
+  /// Linear springs [N m/rad], [N/m].
+  void set_stiffness(const Eigen::Vector3d& rotational, const Eigen::Vector3d& translational) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      resistance[i] = numerics::PiecewisePolynomial::linear(rotational(static_cast<int>(i)), 0.0);
+      resistance[i + 3] = numerics::PiecewisePolynomial::linear(translational(static_cast<int>(i)), 0.0);
+    }
+  }
 };
 
 /// A sphere of one body against a half space of another (HuntCrossleyForce, SmoothSphereHalfSpaceForce).

@@ -91,8 +91,7 @@ LoopConstraint read_line_loop(Context& context, const Element& e) {
 }  // namespace
 
 void read_constraints(Context& context) {
-  const Element root(context.document, context.document.model());
-  for (const Element& element : root.objects("ConstraintSet")) {
+  for (const Element& element : context.members(PartOf::kConstraintSet)) {
     const bool on = element.flag_or("isEnforced", !element.flag_or("isDisabled", false));
     const std::string type = element.type();
     if (type == "CoordinateCouplerConstraint") {

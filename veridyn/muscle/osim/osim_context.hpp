@@ -16,18 +16,42 @@ struct FrameReference {
   Placement placement;
 };
 
+/// What an object of a file is part of: the set that holds such objects, or what may stand among a model's components
+/// without changing its motion.
+enum class PartOf {
+  kBodySet,
+  kJointSet,
+  kConstraintSet,
+  kForceSet,
+  kContactGeometrySet,
+  kMarkerSet,
+  kNothing,
+  kUnknown
+};
+
+[[nodiscard]] PartOf part_of(std::string_view type);
+
+/// What scripts added to the model or to its parts: `<components>` and ComponentSet.
+[[nodiscard]] std::vector<Element> components_of(const Document& document);
+
 /// View of a document, which must outlive it, and the model as far as it has been read.
 struct Context {
   const Document& document;
   Model model;
-  /// Every PhysicalOffsetFrame of the file.
-  std::vector<Element> offset_frames;
+  /// Every PhysicalOffsetFrame and StationDefinedFrame of the file, every Station and Marker.
+  std::vector<Element> frames, stations;
+  /// `components_of` the document.
+  std::vector<Element> components;
 
+  /// The objects of a set, and those of its kind among the components.
+  [[nodiscard]] std::vector<Element> members(PartOf set) const;
   /// Index of a body by name or component path. @throws InputError naming the nearest body.
   [[nodiscard]] int body(const Element& user, const char* property, std::string_view reference) const;
   [[nodiscard]] int coordinate(const Element& user, const char* property, std::string_view reference) const;
-  /// The frame that `reference` means to `user`: ground, a body, or an offset frame, those of `user` first.
-  [[nodiscard]] FrameReference frame(const Element& user, const char* property, std::string_view reference) const;
+  /// The frame that `reference` means to `user`: ground, a body, or a frame fixed to one, those of `user` first.
+  /// `depth`: by how many frames it was come to.
+  [[nodiscard]] FrameReference frame(const Element& user, const char* property, std::string_view reference,
+                                     std::size_t depth = 0) const;
   /// The frame that a point is fixed to; the ground, with a warning, where its file names none.
   [[nodiscard]] FrameReference frame_or_ground(const Element& point);
   /// The body that an offset frame with an empty socket stands in, as OpenSim names such frames: that which owns it, or
@@ -37,6 +61,9 @@ struct Context {
   void warn(const Element& element, std::string_view what);
   void unsupported(const Element& element, bool changes_motion);
 };
+
+/// A frame in another one by two properties: a translation [m] and angles of a body-fixed x-y-z sequence [rad].
+[[nodiscard]] Placement read_placement(const Element& element, const char* translation, const char* orientation);
 
 /// What a socket is connected to: `socket_NAME`, `socket_NAME_connectee_name` or a Connector element.
 [[nodiscard]] std::string socket(const Element& user, const char* name);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
@@ -85,8 +86,19 @@ Bushing bushing_frames(Context& context, const Element& e) {
 
 void read_bushing(Context& context, const Element& e) {
   Bushing b = bushing_frames(context, e);
-  b.rotational_stiffness = bushing_constants(e, "rotational_stiffness");
-  b.translational_stiffness = bushing_constants(e, "translational_stiffness");
+  b.set_stiffness(bushing_constants(e, "rotational_stiffness"), bushing_constants(e, "translational_stiffness"));
+  context.model.body_forces.bushings.push_back(std::move(b));
+}
+
+void read_function_bushing(Context& context, const Element& e) {
+  Bushing b = bushing_frames(context, e);
+  constexpr std::array<const char*, 6> kResistances{"m_x_theta_x_function", "m_y_theta_y_function",
+                                                    "m_z_theta_z_function", "f_x_delta_x_function",
+                                                    "f_y_delta_y_function", "f_z_delta_z_function"};
+  for (std::size_t i = 0; i < kResistances.size(); ++i)
+    if (const Element function = find_function(e, kResistances[i])) b.resistance[i] = read_function(function);
+  if (!b.rotational_damping.isZero() || !b.translational_damping.isZero())
+    context.warn(e, "its damping counts here; OpenSim reads it and applies none");
   context.model.body_forces.bushings.push_back(std::move(b));
 }
 
@@ -127,8 +139,7 @@ void read_expression_bushing(Context& context, const Element& e) {
 
 /// A contact geometry of the file by its name; nothing when it is not there.
 Element contact_geometry(const Context& context, std::string_view name) {
-  const Element root(context.document, context.document.model());
-  for (const Element& geometry : root.objects("ContactGeometrySet"))
+  for (const Element& geometry : context.members(PartOf::kContactGeometrySet))
     if (geometry.name() == last_part(name)) return geometry;
   return {context.document, {}};
 }
@@ -267,6 +278,7 @@ bool read_passive_force(Context& context, const Element& e) {
   if (type == "SpringGeneralizedForce") return read_coordinate_spring(context, e), true;
   if (type == "PointToPointSpring") return read_point_spring(context, e), true;
   if (type == "BushingForce") return read_bushing(context, e), true;
+  if (type == "FunctionBasedBushingForce") return read_function_bushing(context, e), true;
   if (type == "HuntCrossleyForce") return read_hunt_crossley(context, e);
   if (type == "SmoothSphereHalfSpaceForce") return read_smooth_contact(context, e);
   if (type == "PathSpring") return read_path_spring(context, e), true;

@@ -32,6 +32,20 @@ TransformAxis& axis_of(Joint& joint, std::size_t index) {
   return index < 3 ? joint.rotation[index] : joint.translation[index - 3];
 }
 
+/// A constant holds the coordinate as a lock does; a motion over time is none that is understood.
+void read_prescribed(Context& context, const Element& e, Coordinate& coordinate) {
+  const Element function = find_function(e, "prescribed_function");
+  if (!function) return;
+  if (function.type() != "Constant") {
+    context.model.unsupported.push_back({"prescribed_function", coordinate.name, true});
+    return;
+  }
+  coordinate.locked = true;
+  coordinate.default_value = function.number_or("value", 0.0);
+  coordinate.default_speed = 0.0;
+  context.warn(e, fmt::format("its prescribed_function holds it at {:g}", coordinate.default_value));
+}
+
 /// Coordinates of a joint: `<coordinates>` (4.x) or `<CoordinateSet>` (before).
 void read_coordinates(Context& context, const Element& element, Joint& joint, std::size_t wanted) {
   std::vector<Element> found = element.objects("coordinates");
@@ -63,10 +77,7 @@ void read_coordinates(Context& context, const Element& element, Joint& joint, st
       context.warn(c, fmt::format("default_value {} is outside the range {} .. {}", coordinate.default_value,
                                   coordinate.low, coordinate.high));
     }
-    if (const Element prescribed = find_function(c, "prescribed_function");
-        prescribed && c.flag_or("prescribed", false)) {
-      context.warn(c, "its prescribed_function is not used; prescribe the motion in the study");
-    }
+    if (c.flag_or("prescribed", false) && !coordinate.locked) read_prescribed(context, c, coordinate);
     joint.coordinates.push_back(static_cast<int>(context.model.coordinates.size()));
     context.model.coordinates.push_back(std::move(coordinate));
   }
@@ -173,10 +184,9 @@ struct JointSource {
 };
 
 std::vector<JointSource> joint_sources(const Context& context) {
-  const Element root(context.document, context.document.model());
   std::vector<JointSource> sources;
-  for (const Element& element : root.objects("JointSet")) sources.push_back({element, -1});
-  for (const Element& body : root.objects("BodySet")) {
+  for (const Element& element : context.members(PartOf::kJointSet)) sources.push_back({element, -1});
+  for (const Element& body : context.members(PartOf::kBodySet)) {
     for (const pugi::xml_node node : body.property("Joint").children()) {
       if (node.type() == pugi::node_element)
         sources.push_back({{context.document, node}, context.model.body(body.name())});

@@ -302,13 +302,12 @@ void read_muscle(Context& context, const Element& e) {
 }
 
 void read_forces(Context& context) {
-  const Element root(context.document, context.document.model());
-  for (const Element& element : root.objects("ForceSet")) {
+  for (const Element& element : context.members(PartOf::kForceSet)) {
     const std::string type = element.type();
     const bool on = element.flag_or("appliesForce", !element.flag_or("isDisabled", false));
     if (is_muscle(type)) {
       read_muscle(context, element);
-    } else if (type == "CoordinateActuator") {
+    } else if (type == "CoordinateActuator" || type == "ActivationCoordinateActuator") {
       if (on) read_coordinate_actuator(context, element);
     } else if (type == "PathActuator" || type == "PointActuator" || type == "TorqueActuator" ||
                type == "BodyActuator" || type == "PointToPointActuator") {

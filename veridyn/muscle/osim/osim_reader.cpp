@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <set>
@@ -23,11 +24,6 @@ std::vector<std::string> names_of(const List& list) {
   std::vector<std::string> names;
   for (const auto& item : list) names.push_back(item.name);
   return names;
-}
-
-Placement read_placement(const Element& element, const char* translation, const char* orientation) {
-  return {body_fixed_xyz(element.vector_or(orientation, Eigen::Vector3d::Zero())),
-          element.vector_or(translation, Eigen::Vector3d::Zero())};
 }
 
 /// About the mass centre. What no mass can have is repaired: negative principal moments become zero.
@@ -108,7 +104,43 @@ void read_gravity_and_units(Context& context, const Element& root) {
   check("force_units", "newtons", {"newtons", "newton", "Newtons", "N"});
 }
 
+/// By their order in PartOf.
+constexpr std::array<const char*, 6> kSets{"BodySet",  "JointSet",           "ConstraintSet",
+                                           "ForceSet", "ContactGeometrySet", "MarkerSet"};
+
+bool ends_with_one_of(std::string_view type, std::initializer_list<std::string_view> ends) {
+  return std::any_of(ends.begin(), ends.end(), [type](std::string_view end) { return type.ends_with(end); });
+}
+
 }  // namespace
+
+PartOf part_of(std::string_view type) {
+  if (type == "Body") return PartOf::kBodySet;
+  if (type == "Marker") return PartOf::kMarkerSet;
+  if (type == "ContactSphere" || type == "ContactHalfSpace" || type == "ContactMesh")
+    return PartOf::kContactGeometrySet;
+  if (type.ends_with("Joint")) return PartOf::kJointSet;
+  if (type.ends_with("Constraint")) return PartOf::kConstraintSet;
+  if (is_muscle(type) || ends_with_one_of(type, {"Force", "Actuator", "Spring", "Ligament", "Muscle"}))
+    return PartOf::kForceSet;
+  if (ends_with_one_of(type, {"Frame", "Station", "Probe", "Reporter", "Controller", "Metabolics", "Sensor", "IMU"}))
+    return PartOf::kNothing;
+  return PartOf::kUnknown;
+}
+
+std::vector<Element> components_of(const Document& document) {
+  std::vector<Element> found;
+  for (const pugi::xpath_node node : document.model().select_nodes(".//components/* | ./ComponentSet/objects/*"))
+    found.emplace_back(document, node.node());
+  return found;
+}
+
+std::vector<Element> Context::members(PartOf set) const {
+  std::vector<Element> found = Element(document, document.model()).objects(kSets[static_cast<std::size_t>(set)]);
+  for (const Element& component : components)
+    if (part_of(component.type()) == set) found.push_back(component);
+  return found;
+}
 
 int Context::body(const Element& user, const char* property, std::string_view reference) const {
   const int index = model.body(last_part(reference));
@@ -126,65 +158,6 @@ int Context::coordinate(const Element& user, const char* property, std::string_v
                                     suggestion(last_part(reference), names_of(model.coordinates), 8)));
   }
   return index;
-}
-
-std::string Context::parent_by_name(const Element& offset_frame) const {
-  std::string owner = offset_frame.node().parent().parent().attribute("name").value();
-  if (model.body(owner) >= 0) return owner;
-  constexpr std::string_view kSuffix = "_offset";
-  std::string stem = offset_frame.name();
-  if (!stem.ends_with(kSuffix)) return {};
-  stem.resize(stem.size() - kSuffix.size());
-  return model.body(stem) >= 0 ? stem : std::string();
-}
-
-FrameReference Context::frame(const Element& user, const char* property, std::string_view reference) const {
-  // An offset frame may stand in another one; a chain longer than the number of frames is a circle.
-  Placement placement;
-  std::string wanted(reference);
-  pugi::xml_node owner = user.node();
-  for (std::size_t hops = 0; hops <= offset_frames.size(); ++hops) {
-    const std::string name = last_part(wanted);
-    const std::string folder =
-        wanted.size() > name.size() ? last_part(std::string_view(wanted).substr(0, wanted.size() - name.size())) : "";
-    const Element* found = nullptr;
-    for (const Element& candidate : offset_frames) {
-      if (candidate.name() != name) continue;
-      // <frames> or <components> within the object that owns the frame.
-      const pugi::xml_node holder = candidate.node().parent().parent();
-      const std::string_view holder_name = holder.attribute("name").value();
-      const bool local = holder == owner || candidate.node().parent().parent() == owner.parent().parent();
-      const bool named = !folder.empty() && folder != ".." && folder == holder_name;
-      if (named || (local && (folder.empty() || folder == ".."))) {
-        found = &candidate;
-        break;
-      }
-      if (found == nullptr && model.body(name) < 0) found = &candidate;
-    }
-    const bool is_body = model.body(name) >= 0;
-    if (is_body && (found == nullptr || folder == "bodyset")) return {model.body(name), placement};
-    if (found == nullptr) {
-      user.fail(property, fmt::format("there is no body or frame '{}'{}", reference,
-                                      suggestion(name, names_of(model.bodies), 8)));
-    }
-    placement = read_placement(*found, "translation", "orientation") * placement;
-    wanted = socket(*found, "parent");
-    owner = found->node().parent().parent();
-    if (wanted.empty()) wanted = parent_by_name(*found);
-    if (wanted.empty()) user.fail(property, fmt::format("frame '{}' has no parent", name));
-    if (wanted == "..") wanted = owner.attribute("name").value();
-  }
-  user.fail(property, fmt::format("the frames from '{}' on go round in a circle", reference));
-}
-
-FrameReference Context::frame_or_ground(const Element& point) {
-  std::string reference = socket(point, "parent_frame");
-  if (reference.empty()) reference = point.text_or("body", "");
-  if (reference.empty()) {
-    warn(point, "says no frame that it is fixed to; the ground is taken");
-    reference = "ground";
-  }
-  return frame(point, "socket_parent_frame", reference);
 }
 
 void Context::warn(const Element& element, std::string_view what) {
@@ -207,9 +180,8 @@ std::string socket(const Element& user, const char* name) {
 }
 
 void read_bodies(Context& context) {
-  const Element root(context.document, context.document.model());
   context.model.bodies.push_back({.name = "ground"});
-  for (const Element& element : root.objects("BodySet")) {
+  for (const Element& element : context.members(PartOf::kBodySet)) {
     if (element.type() != "Body") {
       context.unsupported(element, true);
       continue;
@@ -230,15 +202,14 @@ void read_bodies(Context& context) {
 void read_wrap_objects(Context& context) {
   const Element root(context.document, context.document.model());
   read_wraps_of(context, root.child("Ground"), 0);
-  for (const Element& element : root.objects("BodySet")) {
+  for (const Element& element : context.members(PartOf::kBodySet)) {
     const int body = context.model.body(element.name());
     if (body >= 0) read_wraps_of(context, element, body);
   }
 }
 
 void read_markers(Context& context) {
-  const Element root(context.document, context.document.model());
-  for (const Element& element : root.objects("MarkerSet")) {
+  for (const Element& element : context.members(PartOf::kMarkerSet)) {
     if (element.type() != "Marker") continue;
     const FrameReference at = context.frame_or_ground(element);
     context.model.markers.push_back(
@@ -251,14 +222,15 @@ void read_markers(Context& context) {
 OsimFile OsimFile::parse(std::string text, std::string name) {
   OsimFile file;
   auto document = std::make_shared<osim::Document>(std::move(text), std::move(name));
-  osim::Context context{*document, {}, {}};
+  osim::Context context{*document, {}, {}, {}, osim::components_of(*document)};
   const osim::Element root(*document, document->model());
   context.model.name = root.name();
   context.model.credits = root.text_or("credits", "");
   context.model.version = document->version();
-  for (const pugi::xpath_node found : document->model().select_nodes(".//PhysicalOffsetFrame")) {
-    context.offset_frames.emplace_back(*document, found.node());
-  }
+  for (const pugi::xpath_node found : document->model().select_nodes(".//PhysicalOffsetFrame | .//StationDefinedFrame"))
+    context.frames.emplace_back(*document, found.node());
+  for (const pugi::xpath_node found : document->model().select_nodes(".//Station | .//Marker"))
+    context.stations.emplace_back(*document, found.node());
   osim::read_gravity_and_units(context, root);
   osim::read_bodies(context);
   osim::read_wrap_objects(context);
@@ -267,8 +239,14 @@ OsimFile OsimFile::parse(std::string text, std::string name) {
   osim::read_default_speeds(context);
   osim::read_forces(context);
   osim::read_markers(context);
-  for (const char* set : {"ControllerSet", "ProbeSet", "ComponentSet", "components"}) {
+  for (const char* set : {"ControllerSet", "ProbeSet"})
     for (const osim::Element& element : root.objects(set)) context.unsupported(element, false);
+  for (const osim::Element& element : context.components) {
+    const osim::PartOf part = osim::part_of(element.type());
+    // Frames and stations are nothing by themselves: what refers to them finds them.
+    if (element.type().ends_with("Frame") || element.type() == "Station") continue;
+    if (part == osim::PartOf::kNothing || part == osim::PartOf::kUnknown)
+      context.unsupported(element, part == osim::PartOf::kUnknown);
   }
   file.model_ = std::move(context.model);
   file.document_ = std::move(document);

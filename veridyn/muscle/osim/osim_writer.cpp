@@ -19,9 +19,10 @@ struct Edit {
 };
 
 pugi::xml_node find_muscle(const osim::Document& document, const std::string& name) {
-  for (const osim::Element& element : osim::Element(document, document.model()).objects("ForceSet")) {
-    if (osim::is_muscle(element.type()) && element.name() == name) return element.node();
-  }
+  for (const auto& elements :
+       {osim::Element(document, document.model()).objects("ForceSet"), osim::components_of(document)})
+    for (const osim::Element& element : elements)
+      if (osim::is_muscle(element.type()) && element.name() == name) return element.node();
   return {};
 }
 
