@@ -89,5 +89,19 @@ TEST(HeldPieces, AreWhatThePiecesSayTheRightOneAtABreak) {
   EXPECT_DOUBLE_EQ(spline.evaluate(3.0).slope, 0.0);
 }
 
+TEST(ContinuedPieces, AreWhatThePiecesSayAndGoOnStraight) {
+  const auto f = PiecewisePolynomial::continued_pieces(
+      std::vector{0.0, 1.0}, std::vector<std::array<double, 4>>{{2.0, 3.0, 1.0, 0.0}, {5.0, 0.0, 4.0, 2.0}}, 2.0);
+  EXPECT_DOUBLE_EQ(f.evaluate(-2.0).value, -4.0);
+  EXPECT_DOUBLE_EQ(f.evaluate(-2.0).slope, 3.0);
+  EXPECT_DOUBLE_EQ(f.evaluate(0.5).value, 3.75);
+  EXPECT_DOUBLE_EQ(f.evaluate(1.0).value, 5.0);  // jumps from 6
+  EXPECT_DOUBLE_EQ(f.evaluate(1.5).slope, 5.5);
+  EXPECT_DOUBLE_EQ(f.evaluate(2.0).value, 11.0);
+  EXPECT_DOUBLE_EQ(f.evaluate(3.0).value, 25.0);
+  EXPECT_DOUBLE_EQ(f.evaluate(3.0).slope, 14.0);
+  EXPECT_DOUBLE_EQ(f.evaluate(3.0).curvature, 0.0);
+}
+
 }  // namespace
 }  // namespace veridyn::numerics

@@ -169,6 +169,28 @@ PiecewisePolynomial PiecewisePolynomial::held_pieces(std::span<const double> bre
   return f;
 }
 
+PiecewisePolynomial PiecewisePolynomial::continued_pieces(std::span<const double> breaks,
+                                                          std::span<const std::array<double, 4>> coefficients,
+                                                          double end) {
+  VERIDYN_ASSERT(!breaks.empty() && breaks.size() == coefficients.size() && end > breaks.back());
+  PiecewisePolynomial f;
+  f.degree_ = 3;
+  f.origin_.clear();
+  f.coefficient_.clear();
+  const auto add = [&f](double origin, const std::array<double, 4>& c) {
+    f.origin_.push_back(origin);
+    f.coefficient_.insert(f.coefficient_.end(), c.begin(), c.end());
+  };
+  add(breaks.front(), {coefficients.front()[0], coefficients.front()[1]});
+  for (std::size_t i = 0; i < breaks.size(); ++i) add(breaks[i], coefficients[i]);
+  const std::array<double, 4>& c = coefficients.back();
+  const double s = end - breaks.back();
+  add(end, {((c[3] * s + c[2]) * s + c[1]) * s + c[0], (3.0 * c[3] * s + 2.0 * c[2]) * s + c[1]});
+  f.breaks_.assign(breaks.begin(), breaks.end());
+  f.breaks_.push_back(end);
+  return f;
+}
+
 double PiecewisePolynomial::integral(double from, double to) const {
   if (to < from) return -integral(to, from);
   const std::size_t n = degree_ + 1;

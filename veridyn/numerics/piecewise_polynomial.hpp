@@ -51,6 +51,12 @@ class PiecewisePolynomial {
   [[nodiscard]] static PiecewisePolynomial held_pieces(std::span<const double> breaks,
                                                        std::span<const std::array<double, 6>> coefficients, double end);
 
+  /// sum_k coefficients[i][k] (x - breaks[i])^k from breaks[i] on, the last piece up to `end`; straight beyond both
+  /// ends. Pieces need not meet. `breaks` strictly increasing, at least one, below `end`; as many coefficients.
+  [[nodiscard]] static PiecewisePolynomial continued_pieces(std::span<const double> breaks,
+                                                            std::span<const std::array<double, 4>> coefficients,
+                                                            double end);
+
   /// Integral from `from` to `to`, exact but for rounding.
   [[nodiscard]] double integral(double from, double to) const;
   /// This function times `factor`.

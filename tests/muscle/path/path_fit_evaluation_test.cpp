@@ -48,9 +48,8 @@ TEST(FittedPaths, AreExactWhereNoFitIsGoodEnough) {
   options.mixed = true;
   const Fit plain(load_model("arm").model());
   const Fit mixed(load_model("arm").model(), options);
-  options.tolerance = 1e-12;
+  options.tolerance = 1e-14;
   options.max_degree = 3;
-  options.panels = 4;
   const Fit strict(load_model("arm").model(), options);
   int fitted = 0;
   for (std::size_t m = 0; m < 6; ++m) {

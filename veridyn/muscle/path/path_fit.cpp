@@ -84,8 +84,8 @@ class FittedPaths::Builder {
   /// Leaves exact what was fitted badly.
   void drop_misfits();
 
-  /// Exact paths at a pose, into `workspace_`.
-  void evaluate_exact(const Eigen::VectorXd& q);
+  /// Exact paths at a pose, into `workspace_`: of one muscle, or of all.
+  void evaluate_exact(const Eigen::VectorXd& q, int muscle = -1);
   /// dL/dq at the pose of the last `evaluate_exact`.
   [[nodiscard]] double exact_slope(int muscle, int coordinate) const;
   [[nodiscard]] Eigen::VectorXd pose(const std::vector<int>& of, int index) const;
@@ -99,11 +99,18 @@ class FittedPaths::Builder {
   [[nodiscard]] double fit_powers(const Part& part, const Samples& samples, const Powers& powers,
                                   Eigen::VectorXd& coefficient) const;
   void fit_part(Part& part, const std::vector<int>& of, double at_rest);
+  /// Length (less that at rest) and slope of a part of one coordinate at a value of it.
+  struct AtPose {
+    double at = 0.0, length = 0.0, slope = 0.0;
+  };
+  [[nodiscard]] AtPose along(const Part& part, int coordinate, double value, double at_rest);
+  [[nodiscard]] static std::array<double, 4> cubic(const AtPose& first, const AtPose& last);
   void store_pieces(Part& part, int coordinate, double at_rest);
   void store(Part& part, const Polynomial& polynomial);
   void keep_exact();
 
-  static constexpr int kCheckPoses = 200;  ///< of a part
+  /// Of a part; of one coordinate fewer tell whether a polynomial follows, and pieces check themselves.
+  [[nodiscard]] static int check_poses(int coordinates) { return coordinates == 1 ? 40 : 200; }
 
   const Model& model_;
   const Mechanism& mechanism_;
@@ -115,6 +122,7 @@ class FittedPaths::Builder {
   Eigen::VectorXd rest_;
   std::vector<double> low_, high_;
   std::vector<int> axis_of_;
+  std::vector<std::uint8_t> skip_;  ///< all but one muscle
 };
 
 FittedPaths::Builder::Builder(const Model& model, const Mechanism& mechanism, const MusclePaths& exact,
@@ -128,7 +136,8 @@ FittedPaths::Builder::Builder(const Model& model, const Mechanism& mechanism, co
       rest_(model.default_pose()),
       low_(static_cast<std::size_t>(exact.coordinates())),
       high_(low_.size()),
-      axis_of_(low_.size(), -1) {
+      axis_of_(low_.size(), -1),
+      skip_(static_cast<std::size_t>(exact.muscles()), 1) {
   for (int c = 0; c < exact.coordinates(); ++c) {
     const Coordinate& k = model.coordinates[c];
     const bool range = k.high > k.low && k.high - k.low < 20.0;
@@ -145,9 +154,12 @@ FittedPaths FittedPaths::Builder::build() {
   return std::move(result_);
 }
 
-void FittedPaths::Builder::evaluate_exact(const Eigen::VectorXd& q) {
+void FittedPaths::Builder::evaluate_exact(const Eigen::VectorXd& q, int muscle) {
   update_positions(mechanism_, q.data(), kinematics_);
-  exact_.evaluate(kinematics_, q.data(), workspace_);
+  if (muscle < 0) return exact_.evaluate(kinematics_, q.data(), workspace_);
+  skip_[muscle] = 0;
+  exact_.evaluate(kinematics_, q.data(), workspace_, skip_);
+  skip_[muscle] = 1;
 }
 
 double FittedPaths::Builder::exact_slope(int muscle, int coordinate) const {
@@ -197,7 +209,7 @@ std::vector<int> FittedPaths::Builder::coordinates_that_matter(int muscle) {
     candidates.push_back(exact_.pairs()[k].coordinate);
   std::vector<double> greatest(candidates.size(), 0.0);
   for (int i = 0; i < 64; ++i) {
-    evaluate_exact(pose(candidates, 1000 + i));
+    evaluate_exact(pose(candidates, 1000 + i), muscle);
     for (std::size_t a = 0; a < candidates.size(); ++a)
       greatest[a] = std::max(greatest[a], std::abs(exact_slope(muscle, candidates[a])));
   }
@@ -217,11 +229,11 @@ std::vector<int> FittedPaths::Builder::groups(int muscle, const std::vector<int>
       double change = 0.0;
       for (int i = 0; i < 24; ++i) {
         Eigen::VectorXd q = pose(used, 2000 + i);
-        evaluate_exact(q);
+        evaluate_exact(q, muscle);
         const double before = exact_slope(muscle, used[a]);
         const auto c = static_cast<std::size_t>(used[b]);
         q[used[b]] = low_[c] + (high_[c] - low_[c]) * halton(i, 5);
-        evaluate_exact(q);
+        evaluate_exact(q, muscle);
         change = std::max(change, std::abs(exact_slope(muscle, used[a]) - before));
       }
       if (change > 1e-7) {
@@ -240,7 +252,7 @@ void FittedPaths::Builder::fit(int muscle) {
   if (result_.fitted_[m] == 0) return;
   const std::vector<int> used = coordinates_that_matter(muscle);
   const std::vector<int> group = groups(muscle, used);
-  evaluate_exact(rest_);
+  evaluate_exact(rest_, muscle);
   const double at_rest = workspace_.length[m];
   result_.constant_[m] = at_rest;
   result_.errors_[m].coordinates = used;
@@ -272,7 +284,7 @@ FittedPaths::Builder::Samples FittedPaths::Builder::sample(const Part& part, con
                                                            double at_rest) {
   const int n = part.coordinates;
   const int most_terms = static_cast<int>(exponents(n, most_degree(n)).size());
-  const int fit_poses = std::max(48, 3 * most_terms), all = fit_poses + kCheckPoses;
+  const int fit_poses = std::max(48, 3 * most_terms), all = fit_poses + check_poses(n);
   Samples s{Eigen::MatrixXd(all, n), Eigen::MatrixXd(all, n), Eigen::VectorXd(all), fit_poses, all};
   for (int i = 0; i < all; ++i) {
     Eigen::VectorXd q = rest_;
@@ -283,7 +295,7 @@ FittedPaths::Builder::Samples FittedPaths::Builder::sample(const Part& part, con
       const Axis& scaled = result_.axes_[part.axes[a]];
       q[scaled.coordinate] = scaled.middle + s.x(i, a) / scaled.scale;
     }
-    evaluate_exact(q);
+    evaluate_exact(q, part.muscle);
     s.value[i] = workspace_.length[part.muscle] - at_rest;
     for (int a = 0; a < n; ++a) s.slope(i, a) = exact_slope(part.muscle, of[a]);
   }
@@ -311,7 +323,7 @@ double FittedPaths::Builder::fit_powers(const Part& part, const Samples& s, cons
     values[i * (n + 1)] = s.value[i];
     for (int a = 0; a < n; ++a) values[i * (n + 1) + 1 + a] = s.slope(i, a);
   }
-  const Eigen::Index fitted = (n + 1) * s.fitted, checked = (n + 1) * kCheckPoses;
+  const Eigen::Index fitted = (n + 1) * s.fitted, checked = (n + 1) * check_poses(n);
   coefficient = numerics::HouseholderQr(rows.topRows(fitted)).solve(Eigen::VectorXd(values.head(fitted)));
   return (rows.bottomRows(checked) * coefficient - values.tail(checked)).cwiseAbs().maxCoeff();
 }
@@ -338,25 +350,64 @@ void FittedPaths::Builder::fit_part(Part& part, const std::vector<int>& of, doub
   }
 }
 
-/// Cubics through lengths and slopes at even distances of the only coordinate.
+FittedPaths::Builder::AtPose FittedPaths::Builder::along(const Part& part, int coordinate, double value,
+                                                         double at_rest) {
+  Eigen::VectorXd q = rest_;
+  q[coordinate] = value;
+  evaluate_exact(q, part.muscle);
+  return {value, workspace_.length[part.muscle] - at_rest, exact_slope(part.muscle, coordinate)};
+}
+
+/// The cubic through lengths and slopes at both ends of a piece, of the distance from its first.
+std::array<double, 4> FittedPaths::Builder::cubic(const AtPose& first, const AtPose& last) {
+  const double h = last.at - first.at, mean = (last.length - first.length) / h;
+  return {first.length, first.slope, (3.0 * mean - 2.0 * first.slope - last.slope) / h,
+          (first.slope + last.slope - 2.0 * mean) / (h * h)};
+}
+
+/// Cubics through lengths and slopes at their ends, each halved until it meets half the tolerance a quarter from both
+/// ends and in the middle. What is still off when a piece is narrower than a millionth of the range jumps: such a
+/// piece goes on straight from its first end, so that arms are those of both sides and none is that of the jump.
 void FittedPaths::Builder::store_pieces(Part& part, int coordinate, double at_rest) {
+  constexpr int kFirstPieces = 32;
+  constexpr std::size_t kMostPieces = 4096;
+  const Axis scaled = result_.axes_[part.axes[0]];
+  const double low = scaled.middle - 1.0 / scaled.scale, range = 2.0 / scaled.scale;
+  std::vector<double> breaks;
+  std::vector<std::array<double, 4>> coefficients;
+  const auto split = [&](const auto& self, const AtPose& first, const AtPose& middle, const AtPose& last) -> void {
+    const double h = last.at - first.at;
+    std::array<double, 4> c = cubic(first, last);
+    const auto off = [&](const AtPose& exact) {
+      const double s = exact.at - first.at;
+      const double length = ((c[3] * s + c[2]) * s + c[1]) * s + c[0], slope = (3.0 * c[3] * s + 2.0 * c[2]) * s + c[1];
+      return std::max(std::abs(length - exact.length), std::abs(slope - exact.slope)) > 0.5 * options_.tolerance;
+    };
+    const AtPose before = along(part, coordinate, first.at + 0.25 * h, at_rest),
+                 after = along(part, coordinate, first.at + 0.75 * h, at_rest);
+    if (off(before) || off(middle) || off(after)) {
+      if (h > 1e-6 * range && breaks.size() < kMostPieces) {
+        self(self, first, before, middle);
+        self(self, middle, after, last);
+        return;
+      }
+      c = {first.length, first.slope, 0.0, 0.0};
+    }
+    breaks.push_back(first.at);
+    coefficients.push_back(c);
+  };
+  AtPose first = along(part, coordinate, low, at_rest);
+  for (int i = 0; i < kFirstPieces; ++i) {
+    const AtPose middle = along(part, coordinate, low + range * (i + 0.5) / kFirstPieces, at_rest),
+                 last = along(part, coordinate, low + range * (i + 1.0) / kFirstPieces, at_rest);
+    split(split, first, middle, last);
+    first = last;
+  }
   part.degree = -1;
   part.first = result_.pieces_.size();
-  const Axis scaled = result_.axes_[part.axes[0]];
-  std::vector<double> l, d;
-  for (int i = 0; i <= options_.panels; ++i) {
-    Eigen::VectorXd q = rest_;
-    q[scaled.coordinate] = scaled.middle + (2.0 * i / options_.panels - 1.0) / scaled.scale;
-    evaluate_exact(q);
-    l.push_back(workspace_.length[part.muscle] - at_rest);
-    d.push_back(exact_slope(part.muscle, coordinate) * 2.0 / (options_.panels * scaled.scale));
-  }
-  for (std::size_t i = 0; i + 1 < l.size(); ++i) {
-    const double rise = l[i + 1] - l[i];
-    result_.pieces_.insert(result_.pieces_.end(),
-                           {l[i], d[i], 3.0 * rise - 2.0 * d[i] - d[i + 1], d[i] + d[i + 1] - 2.0 * rise});
-  }
-  part.end = result_.pieces_.size();
+  part.end = part.first + 1;
+  result_.errors_[part.muscle].terms += 4 * static_cast<int>(breaks.size()) - 1;
+  result_.pieces_.push_back(numerics::PiecewisePolynomial::continued_pieces(breaks, coefficients, low + range));
 }
 
 void FittedPaths::Builder::store(Part& part, const Polynomial& polynomial) {
@@ -410,7 +461,8 @@ void FittedPaths::Builder::drop_misfits() {
   for (std::size_t m = 0; m < result_.errors_.size(); ++m) {
     if (result_.fitted_[m] == 0) continue;
     PathFitError& error = result_.errors_[m];
-    error.fitted = error.length <= options_.tolerance && error.above_tolerance <= options_.most_above;
+    error.fitted = error.length <= options_.tolerance && error.above_tolerance <= options_.most_above &&
+                   error.moment_arm <= options_.largest;
     result_.fitted_[m] = error.fitted ? 1 : 0;
   }
   keep_exact();

@@ -9,6 +9,7 @@
 
 #include "veridyn/muscle/model/model.hpp"
 #include "veridyn/muscle/path/muscle_path.hpp"
+#include "veridyn/numerics/piecewise_polynomial.hpp"
 
 namespace veridyn::muscle {
 
@@ -16,13 +17,14 @@ namespace veridyn::muscle {
 struct PathFitOptions {
   double tolerance = 1.0e-4;  ///< of lengths [m] and moment arms [m/rad or 1], on the check poses
   int max_degree = 12;        ///< total degree of a polynomial; three less with three coordinates, six less with more
-  int panels = 256;       ///< of a one-coordinate part that no polynomial up to `max_degree` meets the tolerance for
-  int check_poses = 600;  ///< independent of those of the fit
+  int check_poses = 200;      ///< independent of those of the fit
   /// Leave exact what is better left so: paths without wraps, which cost less than polynomials of many coordinates
   /// (unless all of them depend on two at most), and those whose fit misses the tolerance: in a length, or in moment
-  /// arms at more than `most_above` of the check poses. To be evaluated with kinematics.
+  /// arms at more than `most_above` of the check poses or by more than `largest` at one. To be evaluated with
+  /// kinematics.
   bool mixed = false;
   double most_above = 0.05;
+  double largest = 1.0e-3;  ///< [m/rad or 1]
 };
 
 /// How well one muscle's path is fitted, on poses that the fit did not use.
@@ -45,7 +47,8 @@ struct PathFitError {
 /// and the elbow part of a biceps). Each part becomes a total-degree polynomial in coordinates scaled to -1..1, of the
 /// least degree that meets the tolerance, by least squares on lengths and moment arms at Halton points of the
 /// coordinates' ranges; a part of one coordinate that would need more becomes a chain of cubic pieces through lengths
-/// and moment arms at their ends. Moment arms are the exact derivatives of the fitted lengths.
+/// and moment arms at their ends, halved until they follow: where a path changes sides, its length or its arms jump
+/// between two pieces. Moment arms are the exact derivatives of the fitted lengths.
 ///
 /// `evaluate` is compiled for double and `SimulationJet`.
 class FittedPaths {
@@ -93,7 +96,7 @@ class FittedPaths {
     int axes[kMostCoordinates] = {};
     std::size_t pair[kMostCoordinates] = {};
     int coordinates = 0;
-    int degree = 0;         ///< -1: cubic pieces
+    int degree = 0;         ///< -1: pieces
     std::size_t first = 0;  ///< in terms_, rows_ or pieces_
     std::size_t end = 0;
   };
@@ -114,9 +117,9 @@ class FittedPaths {
   std::vector<double> constant_;
   std::vector<MusclePaths::Pair> pairs_;
   std::vector<Part> parts_;
-  std::vector<Term> terms_;     ///< of parts with three coordinates and more
-  std::vector<double> rows_;    ///< of parts with one or two: by power of the second, then of the first, ascending
-  std::vector<double> pieces_;  ///< four coefficients a piece, of t = 0..1
+  std::vector<Term> terms_;   ///< of parts with three coordinates and more
+  std::vector<double> rows_;  ///< of parts with one or two: by power of the second, then of the first, ascending
+  std::vector<numerics::PiecewisePolynomial> pieces_;  ///< of their coordinate
   std::vector<PathFitError> errors_;
   std::vector<std::uint8_t> fitted_;                     ///< by muscle
   std::vector<int> exact_;                               ///< the other muscles

@@ -1,6 +1,4 @@
 // Fitted paths at a pose.
-#include <algorithm>
-
 #include "veridyn/muscle/model/simulation_jet.hpp"
 #include "veridyn/muscle/path/path_fit.hpp"
 #include "veridyn/muscle/path/path_workspace.hpp"
@@ -40,27 +38,12 @@ bool FittedPaths::evaluate(const Scalar* q, Scalar* length, Scalar* gradient) co
   return inside;
 }
 
-/// A chain of cubics in one coordinate, straight beyond its range.
+/// Pieces of one coordinate.
 template <typename Scalar>
 inline void FittedPaths::add_pieces(const Part& part, const Scalar* q, Scalar& length, Scalar* gradient) const {
-  const Axis& axis = axes_[part.axes[0]];
-  const Scalar x = along(axis, q);
-  const auto n = (part.end - part.first) / 4;
-  const double at = (value_of(x) + 1.0) * 0.5 * static_cast<double>(n);
-  const double clamped = std::clamp(at, 0.0, static_cast<double>(n) - 1e-9);
-  const auto piece = static_cast<std::size_t>(clamped);
-  const Scalar t = (x + Scalar(1.0)) * Scalar(0.5 * static_cast<double>(n)) - Scalar(static_cast<double>(piece));
-  const double* c = pieces_.data() + part.first + 4 * piece;
-  const double edge = value_of(t) < 0.0 ? 0.0 : 1.0;
-  if (value_of(t) < 0.0 || value_of(t) > 1.0) {
-    const double slope = c[1] + edge * (2.0 * c[2] + 3.0 * c[3]);
-    length += Scalar(c[0] + edge * (c[1] + c[2] + c[3])) + (t - Scalar(edge)) * Scalar(slope);
-    gradient[part.pair[0]] += Scalar(slope * 0.5 * static_cast<double>(n) * axis.scale);
-  } else {
-    length += ((Scalar(c[3]) * t + Scalar(c[2])) * t + Scalar(c[1])) * t + Scalar(c[0]);
-    gradient[part.pair[0]] += ((Scalar(3.0 * c[3]) * t + Scalar(2.0 * c[2])) * t + Scalar(c[1])) *
-                              Scalar(0.5 * static_cast<double>(n) * axis.scale);
-  }
+  const numerics::FunctionValue<Scalar> f = pieces_[part.first].evaluate(q[axes_[part.axes[0]].coordinate]);
+  length += f.value;
+  gradient[part.pair[0]] += f.slope;
 }
 
 /// A polynomial of one or two coordinates: Horner's rule in x for each row, in y over the rows.
