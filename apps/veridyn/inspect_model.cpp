@@ -71,8 +71,13 @@ std::string coordinate_note(const Model& model, int index) {
   return note;
 }
 
+/// Wrap objects, or the coordinates that the path's length is a function of.
 std::string wraps_text(const Model& model, const Muscle& muscle) {
   std::string text;
+  if (muscle.function) {
+    text = "length given by";
+    for (const int c : muscle.function->coordinates) text += " " + model.coordinates[c].name;
+  }
   for (const PathWrap& wrap : muscle.wraps) {
     text += (text.empty() ? "" : " ") + model.wrap_objects[wrap.object].name;
   }

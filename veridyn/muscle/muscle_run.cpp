@@ -163,25 +163,53 @@ MuscleResult follow(const MuscleStudy& study, Progress& progress) {
   return result;
 }
 
-/// Warnings about coordinates that left their ranges in a simulation: only forces keep them there.
+/// Whether lengths of muscles are extrapolated where a coordinate leaves its range, and a word about it.
+std::string extrapolation(const MusculoskeletalSystem& system, int coordinate) {
+  const auto depends = [&](const auto& path) {
+    return path.function &&
+           std::count(path.function->coordinates.begin(), path.function->coordinates.end(), coordinate);
+  };
+  const Model& model = system.model();
+  if (std::any_of(model.muscles.begin(), model.muscles.end(), depends) ||
+      std::any_of(model.passive_paths.begin(), model.passive_paths.end(), depends))
+    return "; the model's functions of paths are extrapolated from there on";
+  return system.path_source() == PathSource::kFitted ? "; fitted paths are extrapolated from there on" : "";
+}
+
+/// Warnings about coordinates that left their ranges in a simulation, where only forces keep them; of a given motion
+/// where paths are extrapolated.
 std::vector<std::string> range_warnings(const MuscleStudy& study, const MuscleTrajectory& t) {
   std::vector<std::string> warnings;
   const Model& model = study.system->model();
+  const bool simulated = study.method == MuscleMethod::kForward || study.method == MuscleMethod::kComputedMuscleControl;
   for (const int c : study.system->reduction().free()) {
+    const std::string extrapolated = extrapolation(*study.system, c);
+    if (!simulated && (extrapolated.empty() || study.method == MuscleMethod::kInverseDynamics)) continue;
     const Coordinate& k = model.coordinates[c];
     const double slack = 1e-3 * (k.high - k.low);
     for (Eigen::Index i = 0; i < t.q.rows(); ++i) {
       if (t.q(i, c) >= k.low - slack && t.q(i, c) <= k.high + slack) continue;
       const bool angle = k.unit() == "rad";
       const double unit = angle ? 1.0 / kDegree : 1.0;
-      warnings.push_back(fmt::format(
-          "'{}' leaves its range {:.4g} .. {:.4g} {} at {:.4g} s{}", k.name, unit * k.low, unit * k.high,
-          angle ? "deg" : "m", t.time[i],
-          study.system->path_source() == PathSource::kFitted ? "; fitted paths are extrapolated from there on" : ""));
+      warnings.push_back(fmt::format("'{}' leaves its range {:.4g} .. {:.4g} {} at {:.4g} s{}", k.name, unit * k.low,
+                                     unit * k.high, angle ? "deg" : "m", t.time[i], extrapolated));
       break;
     }
   }
   return warnings;
+}
+
+/// What reactions lack of muscles that pull at no place.
+void warn_of_reactions(const MuscleStudy& study, MuscleResult& result) {
+  if (!result.reactions || study.method == MuscleMethod::kInverseDynamics) return;
+  const std::vector<std::string> names = paths_without_place(*study.system);
+  if (names.empty()) return;
+  constexpr std::size_t kMost = 3;
+  result.warnings.push_back(
+      fmt::format("joint reactions lack what {} of the paths ({}{}) press the bones together with: they are functions "
+                  "of coordinates and pull at no place; only their moments are in the reactions",
+                  names.size(), fmt::join(names.begin(), names.begin() + std::min(names.size(), kMost), ", "),
+                  names.size() > kMost ? ", ..." : ""));
 }
 
 }  // namespace
@@ -214,9 +242,8 @@ MuscleResult run_study(const MuscleStudy& study, Progress& progress) {
     result.notes.push_back(fmt::format("metabolic cost: {:.4g} J, of which the body at rest {:.4g} J",
                                        result.metabolic->energy,
                                        result.metabolic->basal * (result.trajectory.end_time - study.begin)));
-  if (study.method == MuscleMethod::kForward || study.method == MuscleMethod::kComputedMuscleControl) {
-    for (std::string& warning : range_warnings(study, result.trajectory)) result.warnings.push_back(std::move(warning));
-  }
+  for (std::string& warning : range_warnings(study, result.trajectory)) result.warnings.push_back(std::move(warning));
+  warn_of_reactions(study, result);
   std::string carried = lifting_reserve_warning(*study.system, result.trajectory.reserve);
   if (!carried.empty()) result.warnings.push_back(std::move(carried));
   for (const WrapBandVisit& visit : wrap_band_visits(*study.system, result.trajectory.time, result.trajectory.q))

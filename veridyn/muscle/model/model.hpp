@@ -14,6 +14,7 @@
 #include "veridyn/muscle/model/loop_constraint.hpp"
 #include "veridyn/muscle/model/muscle_parameters.hpp"
 #include "veridyn/muscle/model/placement.hpp"
+#include "veridyn/numerics/multivariate_polynomial.hpp"
 #include "veridyn/numerics/piecewise_polynomial.hpp"
 
 /// A musculoskeletal model as its file describes it: plain data with all names resolved to indices and all offset
@@ -58,6 +59,9 @@ struct TransformAxis {
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< of unit length
   int coordinate = -1;                              ///< index of a coordinate of the model; -1: a constant
   numerics::PiecewisePolynomial function;
+  /// Of several coordinates, in place of both: their indices, the arguments of `function_of_several`.
+  std::vector<int> several{};
+  numerics::MultivariatePolynomial function_of_several{};
 };
 
 /// Child frame in the parent frame: rotation R(axis 0) R(axis 1) R(axis 2), body-fixed in this order, and translation
@@ -146,12 +150,19 @@ struct PathWrap {
   EllipsoidMethod method = EllipsoidMethod::kHybrid;
 };
 
+/// The length [m] of a path as a function of coordinates, without geometry (FunctionBasedPath).
+struct PathFunction {
+  std::vector<int> coordinates;  ///< the function's arguments, each once
+  std::variant<numerics::PiecewisePolynomial, numerics::MultivariatePolynomial> length;
+};
+
 /// A muscle with its path.
 struct Muscle {
   MuscleParameters parameters;
   std::vector<PathPoint> points;
   std::vector<PathWrap> wraps;
-  bool enabled = true;  ///< appliesForce
+  std::optional<PathFunction> function{};  ///< in place of points and wraps
+  bool enabled = true;                     ///< appliesForce
   [[nodiscard]] const std::string& name() const { return parameters.name; }
 };
 
@@ -215,6 +226,7 @@ struct PassivePath {
   std::string name;
   std::vector<PathPoint> points;
   std::vector<PathWrap> wraps;
+  std::optional<PathFunction> function{};  ///< in place of points and wraps
   PassivePathLaw law;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -90,8 +91,13 @@ void read_markers(Context& context);
 /// Reads a muscle of the set of forces. @throws InputError with file, line and element.
 void read_muscle(Context& context, const Element& element);
 
-/// Reads the path of a muscle or of another force along one. @throws InputError with file, line and element.
-void read_path(Context& context, const Element& element, std::vector<PathPoint>& points, std::vector<PathWrap>& wraps);
+/// Reads the path of a muscle or of another force along one: points and wraps, or a function of coordinates.
+/// @throws InputError with file, line and element.
+void read_path(Context& context, const Element& element, std::vector<PathPoint>& points, std::vector<PathWrap>& wraps,
+               std::optional<PathFunction>& function);
+/// The path that a FunctionBasedPath of `owner` gives; nothing when there is none. @throws InputError with file, line
+/// and element.
+[[nodiscard]] std::optional<PathFunction> read_path_function(Context& context, const Element& owner);
 /// Reads a force that needs no control. False: it is none that is understood. @throws InputError with file, line and
 /// element.
 [[nodiscard]] bool read_passive_force(Context& context, const Element& element);

@@ -242,7 +242,7 @@ bool read_smooth_contact(Context& context, const Element& e) {
 void read_path_spring(Context& context, const Element& e) {
   PassivePath path;
   path.name = e.name();
-  read_path(context, e, path.points, path.wraps);
+  read_path(context, e, path.points, path.wraps, path.function);
   path.law = PathSpringLaw{e.not_negative_or("resting_length", 0.0), e.not_negative_or("stiffness", 0.0),
                            e.not_negative_or("dissipation", 0.0)};
   context.model.passive_paths.push_back(std::move(path));
@@ -251,7 +251,7 @@ void read_path_spring(Context& context, const Element& e) {
 void read_ligament(Context& context, const Element& e) {
   PassivePath path;
   path.name = e.name();
-  read_path(context, e, path.points, path.wraps);
+  read_path(context, e, path.points, path.wraps, path.function);
   const Element curve = find_function(e, "force_length_curve");
   if (!curve) e.fail("force_length_curve", "missing");
   path.law =
@@ -262,7 +262,7 @@ void read_ligament(Context& context, const Element& e) {
 void read_blankevoort_ligament(Context& context, const Element& e) {
   PassivePath path;
   path.name = e.name();
-  read_path(context, e, path.points, path.wraps);
+  read_path(context, e, path.points, path.wraps, path.function);
   path.law = BlankevoortLaw{.slack_length = e.positive_or("slack_length", -1.0),
                             .linear_stiffness = e.not_negative_or("linear_stiffness", 1.0),
                             .transition_strain = e.not_negative_or("transition_strain", 0.06),

@@ -72,6 +72,10 @@ numerics::PiecewisePolynomial read_function(const Element& function, int depth) 
     const Points points = read_points(function);
     return numerics::PiecewisePolynomial::natural_spline(points.x, points.y);
   }
+  if (type == "MultivariatePolynomialFunction") {
+    // Of one argument, ascending.
+    return numerics::PiecewisePolynomial::polynomial(read_function_of_several(function, 1).coefficients());
+  }
   if (type == "MultiplierFunction") {
     const Element inner = find_function(function, "function");
     if (!inner) function.fail("function", "missing");

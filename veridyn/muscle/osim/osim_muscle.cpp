@@ -209,7 +209,10 @@ void read_coordinate_actuator(Context& context, const Element& e) {
 
 }  // namespace
 
-void read_path(Context& context, const Element& element, std::vector<PathPoint>& points, std::vector<PathWrap>& wraps) {
+void read_path(Context& context, const Element& element, std::vector<PathPoint>& points, std::vector<PathWrap>& wraps,
+               std::optional<PathFunction>& function) {
+  function = read_path_function(context, element);
+  if (function) return;
   Element path = element.child("GeometryPath");
   if (!path) path = Element(context.document, element.property("path").child("GeometryPath"));
   if (!path) {
@@ -297,7 +300,7 @@ void read_muscle(Context& context, const Element& e) {
   if (m.tendon_slack_length == 0.0 && !p.rigid_tendon) {
     e.fail("tendon_slack_length", "0 needs a rigid tendon (ignore_tendon_compliance)");
   }
-  read_path(context, e, muscle.points, muscle.wraps);
+  read_path(context, e, muscle.points, muscle.wraps, muscle.function);
   context.model.muscles.push_back(std::move(muscle));
 }
 

@@ -69,7 +69,13 @@ MusclePaths::MusclePaths(const Model& model, const Mechanism& mechanism, WrapMod
     for (int c = 0; c < coordinates_; ++c) moves_[link * coordinates_ + c] = mechanism.moves(c, link) ? 1 : 0;
   for (const WrapObject& object : model.wrap_objects) add_object(model, mechanism, object);
   for (const Muscle& muscle : model.muscles) add_path(model, mechanism, muscle);
-  for (int muscle = 0; muscle < muscles(); ++muscle) compile_path(muscle);
+  for (int muscle = 0; muscle < muscles(); ++muscle) {
+    if (model.muscles[muscle].function) {
+      add_function(model, muscle);
+    } else {
+      compile_path(muscle);
+    }
+  }
   sort_segments();
   list_points();
 }
@@ -140,6 +146,10 @@ MusclePaths::PathStation MusclePaths::station(const Model& model, const Mechanis
 void MusclePaths::add_path(const Model& model, const Mechanism& mechanism, const Muscle& muscle) {
   Path path;
   path.name = muscle.name();
+  if (muscle.function) {
+    muscles_.push_back(path);
+    return;
+  }
   if (muscle.points.size() < 2)
     throw InputError(model.name, fmt::format("muscle {}: a path needs at least two points", path.name));
   for (const PathPoint& p : muscle.points) path.stations.push_back(station(model, mechanism, muscle, p));
@@ -158,6 +168,14 @@ void MusclePaths::add_path(const Model& model, const Mechanism& mechanism, const
   if (path.wraps.size() > kMostWraps)
     throw InputError(model.name, fmt::format("muscle {}: more than {} wrap objects", path.name, kMostWraps));
   muscles_.push_back(path);
+}
+
+void MusclePaths::add_function(const Model& model, int muscle) {
+  Path& path = muscles_[muscle];
+  const std::vector<int> coordinates = functions_.add(model, muscle, pairs_.size());
+  path.pairs[0] = pairs_.size();
+  for (const int c : coordinates) pairs_.push_back({muscle, c});
+  path.pairs[1] = pairs_.size();
 }
 
 /// Object and both ends on one link: the answer is always the same; where it is no, the wrap is not tested again.

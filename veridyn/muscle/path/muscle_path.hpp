@@ -9,6 +9,7 @@
 
 #include "veridyn/muscle/dynamics/mechanism.hpp"
 #include "veridyn/muscle/model/model.hpp"
+#include "veridyn/muscle/path/path_functions.hpp"
 #include "veridyn/muscle/path/wrap_cylinder.hpp"
 #include "veridyn/muscle/path/wrap_ellipsoid.hpp"
 #include "veridyn/muscle/path/wrap_sphere.hpp"
@@ -55,6 +56,9 @@ class MusclePaths {
   [[nodiscard]] WrapMode mode() const { return mode_; }
   /// Whether a muscle has wrap objects that are active.
   [[nodiscard]] bool can_wrap(int muscle) const { return !muscles_[muscle].wraps.empty(); }
+  /// Whether the model gives a muscle's length as a function of coordinates. Such a path is nowhere: it has no points,
+  /// and its tension is generalised forces only.
+  [[nodiscard]] bool by_function(int muscle) const { return muscles_[muscle].stations.empty(); }
   /// All pairs, muscle after muscle: the order of `PathWorkspace::gradient`.
   [[nodiscard]] std::span<const Pair> pairs() const { return pairs_; }
   [[nodiscard]] std::size_t first_pair(int muscle) const { return muscles_[muscle].pairs[0]; }
@@ -66,7 +70,8 @@ class MusclePaths {
   /// Lengths and `gradient`.
   template <typename Scalar>
   void evaluate(const Kinematics<Scalar>& kinematics, const Scalar* q, PathWorkspace<Scalar>& workspace) const;
-  /// The same, except that muscles that can wrap and have skip[muscle] != 0 are not evaluated.
+  /// The same, except that muscles that can wrap, or are given by functions, and have skip[muscle] != 0 are not
+  /// evaluated.
   template <typename Scalar>
   void evaluate(const Kinematics<Scalar>& kinematics, const Scalar* q, PathWorkspace<Scalar>& workspace,
                 std::span<const std::uint8_t> skip) const;
@@ -75,12 +80,12 @@ class MusclePaths {
   void speeds(const PathWorkspace<Scalar>& workspace, const Scalar* qdot, Scalar* speeds) const;
 
   /// Adds what a tension [N] along one muscle's path does to the links that it pulls, by link: strings at their ends,
-  /// wraps at their tangent points. `workspace` is overwritten.
+  /// wraps at their tangent points. Nothing for a path by a function. `workspace` is overwritten.
   void add_tension(const Kinematics<double>& kinematics, const double* q, int muscle, double tension,
                    PathWorkspace<double>& workspace, std::span<SpatialVector<double>> by_link) const;
 
   /// One muscle's path as a polyline in ground, for drawings: its active points and, on each wrap, `arc_points` points
-  /// between the tangent points (on the surface, along a section of it).
+  /// between the tangent points (on the surface, along a section of it). Empty for a path by a function.
   [[nodiscard]] std::vector<Eigen::Vector3d> polyline(const Kinematics<double>& kinematics, const double* q, int muscle,
                                                       int arc_points = 16) const;
   /// Names of the wrap objects that the path touches, in its order.
@@ -201,6 +206,7 @@ class MusclePaths {
   int segment(int a, int b);
   void add_object(const Model& model, const Mechanism& mechanism, const WrapObject& object);
   void add_path(const Model& model, const Mechanism& mechanism, const Muscle& muscle);
+  void add_function(const Model& model, int muscle);
   [[nodiscard]] PathStation station(const Model& model, const Mechanism& mechanism, const Muscle& muscle,
                                     const PathPoint& point);
   [[nodiscard]] bool never_wraps(const Object& object, const Point& a, const Point& b) const;
@@ -229,7 +235,8 @@ class MusclePaths {
   std::vector<Span> spans_;
   std::vector<Path> muscles_;
   std::vector<Pair> pairs_;
-  std::vector<int> general_;  ///< muscles that are not in straight_
+  std::vector<int> general_;  ///< muscles that are in neither straight_ nor functions_
+  PathFunctions functions_;
   std::vector<StraightPath> straight_;
   std::vector<Condition> conditions_;
   std::vector<Variant> variants_;

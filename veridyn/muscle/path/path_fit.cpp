@@ -10,6 +10,7 @@
 #include "veridyn/core/index.hpp"
 #include "veridyn/muscle/path/path_workspace.hpp"
 #include "veridyn/numerics/linear_algebra/orthogonal.hpp"
+#include "veridyn/numerics/multivariate_polynomial.hpp"
 
 namespace veridyn::muscle {
 namespace {
@@ -24,26 +25,6 @@ double halton(int index, int axis) {
     value += fraction * (i % base);
   }
   return value;
-}
-
-/// Exponents of all monomials of `n` variables up to total degree `degree`; for n <= 2 in the order of rows.
-std::vector<std::array<unsigned char, 8>> exponents(int n, int degree) {
-  std::vector<std::array<unsigned char, 8>> found;
-  std::array<unsigned char, 8> power{};
-  // Counts with the last variable slowest.
-  const auto fill = [&](const auto& self, int axis, int left) -> void {
-    if (axis < 0) {
-      found.push_back(power);
-      return;
-    }
-    for (int i = 0; i <= left; ++i) {
-      power[axis] = static_cast<unsigned char>(i);
-      self(self, axis - 1, left - i);
-    }
-    power[axis] = 0;
-  };
-  fill(fill, n - 1, degree);
-  return found;
 }
 
 double power_of(double x, int n) {
@@ -69,16 +50,16 @@ class FittedPaths::Builder {
     Eigen::Index fitted = 0;
     Eigen::Index all = 0;
   };
-  using Powers = std::vector<std::array<unsigned char, 8>>;
+  using Powers = std::vector<numerics::MultivariatePolynomial::Powers>;
   struct Polynomial {
     Eigen::VectorXd coefficient;
-    Powers powers;
     double error = 1e300;
     int degree = 1;
   };
 
   void choose_muscles();
   void fit(int muscle);
+  void take_over(int muscle);
   /// Errors of the whole, on check poses that no part of the fit used.
   void check();
   /// Leaves exact what was fitted badly.
@@ -192,11 +173,14 @@ void FittedPaths::Builder::choose_muscles() {
   constexpr std::size_t kCheapCoordinates = 2;
   bool all_cheap = true;
   for (int m = 0; m < exact_.muscles(); ++m)
-    all_cheap = all_cheap && (exact_.can_wrap(m) || exact_.end_pair(m) - exact_.first_pair(m) <= kCheapCoordinates);
+    all_cheap = all_cheap && (exact_.can_wrap(m) || exact_.by_function(m) ||
+                              exact_.end_pair(m) - exact_.first_pair(m) <= kCheapCoordinates);
   for (int m = 0; m < exact_.muscles(); ++m) {
-    result_.fitted_.push_back(options_.mixed && !all_cheap && !exact_.can_wrap(m) ? 0 : 1);
+    const bool given = exact_.by_function(m);
+    result_.fitted_.push_back(options_.mixed && !all_cheap && !exact_.can_wrap(m) && !given ? 0 : 1);
     PathFitError error;
     error.muscle = model_.muscles[m].name();
+    error.given = given;
     error.fitted = result_.fitted_.back() != 0;
     result_.errors_.push_back(error);
     result_.constant_.push_back(0.0);
@@ -246,10 +230,19 @@ std::vector<int> FittedPaths::Builder::groups(int muscle, const std::vector<int>
   return group;
 }
 
+/// The function that the model gives.
+void FittedPaths::Builder::take_over(int muscle) {
+  PathFitError& error = result_.errors_[muscle];
+  error.coordinates = result_.functions_.add(model_, muscle, result_.pairs_.size());
+  error.terms = result_.functions_.terms(muscle);
+  for (const int c : error.coordinates) result_.pairs_.push_back({muscle, c});
+}
+
 /// A sum: L(q) = L(rest) + sum over groups (L(rest but for the group) - L(rest)).
 void FittedPaths::Builder::fit(int muscle) {
   const auto m = static_cast<std::size_t>(muscle);
   if (result_.fitted_[m] == 0) return;
+  if (exact_.by_function(muscle)) return take_over(muscle);
   const std::vector<int> used = coordinates_that_matter(muscle);
   const std::vector<int> group = groups(muscle, used);
   evaluate_exact(rest_, muscle);
@@ -271,19 +264,20 @@ void FittedPaths::Builder::fit(int muscle) {
     if (of.empty()) continue;
     part.coordinates = static_cast<int>(of.size());
     fit_part(part, of, at_rest);
-    result_.errors_[m].terms += static_cast<int>(part.end - part.first);
+    if (!part.in_pieces()) result_.errors_[m].terms += static_cast<int>(part.polynomial.coefficients().size());
     result_.parts_.push_back(part);
   }
 }
 
 int FittedPaths::Builder::most_degree(int n) const {
-  return std::clamp(options_.max_degree - (n > 3 ? 6 : (n == 3 ? 3 : 0)), 1, kMostDegree);
+  return std::clamp(options_.max_degree - (n > 3 ? 6 : (n == 3 ? 3 : 0)), 1,
+                    numerics::MultivariatePolynomial::kMostOrder);
 }
 
 FittedPaths::Builder::Samples FittedPaths::Builder::sample(const Part& part, const std::vector<int>& of,
                                                            double at_rest) {
   const int n = part.coordinates;
-  const int most_terms = static_cast<int>(exponents(n, most_degree(n)).size());
+  const int most_terms = static_cast<int>(numerics::MultivariatePolynomial::terms(n, most_degree(n)));
   const int fit_poses = std::max(48, 3 * most_terms), all = fit_poses + check_poses(n);
   Samples s{Eigen::MatrixXd(all, n), Eigen::MatrixXd(all, n), Eigen::VectorXd(all), fit_poses, all};
   for (int i = 0; i < all; ++i) {
@@ -310,13 +304,14 @@ double FittedPaths::Builder::fit_powers(const Part& part, const Samples& s, cons
   Eigen::VectorXd values((n + 1) * s.all);
   for (Eigen::Index i = 0; i < s.all; ++i) {
     for (Eigen::Index t = 0; t < terms; ++t) {
-      const auto& p = powers[t];
+      // The first coordinate is the polynomial's last argument.
+      const auto p = [&](int a) { return static_cast<int>(powers[t][n - 1 - a]); };
       double product = 1.0;
-      for (int a = 0; a < n; ++a) product *= power_of(s.x(i, a), p[a]);
+      for (int a = 0; a < n; ++a) product *= power_of(s.x(i, a), p(a));
       rows(i * (n + 1), t) = product;
       for (int a = 0; a < n; ++a) {
-        double d = p[a] * result_.axes_[part.axes[a]].scale;
-        for (int b = 0; b < n && d != 0.0; ++b) d *= power_of(s.x(i, b), p[b] - (a == b ? 1 : 0));
+        double d = p(a) * result_.axes_[part.axes[a]].scale;
+        for (int b = 0; b < n && d != 0.0; ++b) d *= power_of(s.x(i, b), p(b) - (a == b ? 1 : 0));
         rows(i * (n + 1) + 1 + a, t) = d;
       }
     }
@@ -332,10 +327,10 @@ double FittedPaths::Builder::fit_powers(const Part& part, const Samples& s, cons
 FittedPaths::Builder::Polynomial FittedPaths::Builder::fit_polynomial(const Part& part, const Samples& samples) const {
   Polynomial best;
   for (int degree = 1; degree <= most_degree(part.coordinates); ++degree) {
-    const Powers powers = exponents(part.coordinates, degree);
+    const Powers powers = numerics::MultivariatePolynomial::powers(part.coordinates, degree);
     Eigen::VectorXd coefficient;
     const double worst = fit_powers(part, samples, powers, coefficient);
-    if (worst < best.error) best = {coefficient, powers, worst, degree};
+    if (worst < best.error) best = {coefficient, worst, degree};
     if (worst < 0.5 * options_.tolerance) break;
   }
   return best;
@@ -403,30 +398,16 @@ void FittedPaths::Builder::store_pieces(Part& part, int coordinate, double at_re
     split(split, first, middle, last);
     first = last;
   }
-  part.degree = -1;
   part.first = result_.pieces_.size();
-  part.end = part.first + 1;
-  result_.errors_[part.muscle].terms += 4 * static_cast<int>(breaks.size()) - 1;
+  result_.errors_[part.muscle].terms += 4 * static_cast<int>(breaks.size());
   result_.pieces_.push_back(numerics::PiecewisePolynomial::continued_pieces(breaks, coefficients, low + range));
 }
 
 void FittedPaths::Builder::store(Part& part, const Polynomial& polynomial) {
-  part.degree = polynomial.degree;
   const Eigen::VectorXd& c = polynomial.coefficient;
-  if (part.coordinates <= 2) {
-    part.first = result_.rows_.size();
-    result_.rows_.insert(result_.rows_.end(), c.data(), c.data() + c.size());
-    part.end = result_.rows_.size();
-    return;
-  }
-  part.first = result_.terms_.size();
-  for (Eigen::Index t = 0; t < c.size(); ++t) {
-    Term term;
-    term.factor = c[t];
-    std::copy_n(polynomial.powers[t].begin(), kMostCoordinates, term.power);
-    result_.terms_.push_back(term);
-  }
-  part.end = result_.terms_.size();
+  part.polynomial = {part.coordinates, polynomial.degree, {c.data(), c.data() + c.size()}};
+  std::reverse(part.axes, part.axes + part.coordinates);
+  std::reverse(part.pair, part.pair + part.coordinates);
 }
 
 void FittedPaths::Builder::check() {
@@ -488,6 +469,7 @@ void FittedPaths::Builder::keep_exact() {
     }
   }
   result_.pairs_ = pairs;
+  result_.functions_.move_pairs(place);
   std::vector<Axis> axes;
   std::vector<int> axis_place(result_.axes_.size(), -1);
   for (Part& part : result_.parts_) {

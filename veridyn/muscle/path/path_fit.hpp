@@ -9,6 +9,8 @@
 
 #include "veridyn/muscle/model/model.hpp"
 #include "veridyn/muscle/path/muscle_path.hpp"
+#include "veridyn/muscle/path/path_functions.hpp"
+#include "veridyn/numerics/multivariate_polynomial.hpp"
 #include "veridyn/numerics/piecewise_polynomial.hpp"
 
 namespace veridyn::muscle {
@@ -31,6 +33,7 @@ struct PathFitOptions {
 struct PathFitError {
   std::string muscle;
   bool fitted = true;            ///< false: left exact; the figures are those of the fit that was not good enough, or 0
+  bool given = false;            ///< by the model as a function, which is used as it is; fitted, without error
   std::vector<int> coordinates;  ///< that its length depends on
   int terms = 0;                 ///< coefficients
   double length = 0.0;           ///< largest difference [m]
@@ -49,6 +52,8 @@ struct PathFitError {
 /// coordinates' ranges; a part of one coordinate that would need more becomes a chain of cubic pieces through lengths
 /// and moment arms at their ends, halved until they follow: where a path changes sides, its length or its arms jump
 /// between two pieces. Moment arms are the exact derivatives of the fitted lengths.
+///
+/// Paths that the model gives as functions of coordinates are those functions.
 ///
 /// `evaluate` is compiled for double and `SimulationJet`.
 class FittedPaths {
@@ -80,25 +85,19 @@ class FittedPaths {
   FittedPaths() = default;
 
   static constexpr int kMostCoordinates = 8;
-  static constexpr int kMostDegree = 15;
-
   struct Axis {  // x = (q - middle) * scale
     int coordinate = 0;
     double middle = 0.0;
     double scale = 1.0;
   };
-  struct Term {
-    double factor = 0.0;
-    unsigned char power[kMostCoordinates] = {};
-  };
   struct Part {
     int muscle = 0;
-    int axes[kMostCoordinates] = {};
+    int axes[kMostCoordinates] = {};  ///< in the order of the polynomial's arguments
     std::size_t pair[kMostCoordinates] = {};
     int coordinates = 0;
-    int degree = 0;         ///< -1: pieces
-    std::size_t first = 0;  ///< in terms_, rows_ or pieces_
-    std::size_t end = 0;
+    numerics::MultivariatePolynomial polynomial{};  ///< of no argument: pieces
+    std::size_t first = 0;                          ///< in pieces_
+    [[nodiscard]] bool in_pieces() const { return polynomial.arguments() == 0; }
   };
 
   /// Along `axis`, -1..1 within its range.
@@ -109,17 +108,14 @@ class FittedPaths {
   template <typename Scalar>
   void add_pieces(const Part& part, const Scalar* q, Scalar& length, Scalar* gradient) const;
   template <typename Scalar>
-  void add_rows(const Part& part, const Scalar* q, Scalar& length, Scalar* gradient) const;
-  template <typename Scalar>
-  void add_terms(const Part& part, const Scalar* q, Scalar& length, Scalar* gradient) const;
+  void add_polynomial(const Part& part, const Scalar* q, Scalar& length, Scalar* gradient) const;
 
   std::vector<Axis> axes_;
   std::vector<double> constant_;
   std::vector<MusclePaths::Pair> pairs_;
   std::vector<Part> parts_;
-  std::vector<Term> terms_;   ///< of parts with three coordinates and more
-  std::vector<double> rows_;  ///< of parts with one or two: by power of the second, then of the first, ascending
   std::vector<numerics::PiecewisePolynomial> pieces_;  ///< of their coordinate
+  PathFunctions functions_;                            ///< that the model gives
   std::vector<PathFitError> errors_;
   std::vector<std::uint8_t> fitted_;                     ///< by muscle
   std::vector<int> exact_;                               ///< the other muscles

@@ -28,10 +28,10 @@ class PathSolver {
   PathSolver(const MusclePaths& paths, const Kinematics<Scalar>& kinematics, const Scalar* q,
              PathWorkspace<Scalar>& workspace, PathPlaces places);
 
-  /// All muscles but those of `skip` (by muscle, may be empty) that wrap.
+  /// All muscles but those of `skip` (by muscle, may be empty) that wrap or are given by functions.
   template <bool kGradient>
   void all(std::span<const std::uint8_t> skip = {});
-  /// Solves one path; its nodes are in the workspace. Returns their number.
+  /// Solves one path; its nodes are in the workspace. Returns their number: none of a path by a function.
   std::size_t nodes_of(int muscle);
   /// Adds what a tension along one path does to the links that it pulls, by link, forces in ground.
   void pull(int muscle, const Scalar& tension, SpatialVector<Scalar>* by_link);

@@ -47,6 +47,7 @@ inline void PathSolver<Scalar>::all(std::span<const std::uint8_t> skip) {
     w_.flag[muscle] = PathFlag::kFine;
     w_.length[muscle] = general<kGradient>(paths_.muscles_[muscle], w_.flag[muscle]);
   }
+  paths_.functions_.template evaluate<kGradient>(q_, w_.length.data(), w_.gradient.data(), skip);
 }
 
 template <typename Scalar>

@@ -16,6 +16,7 @@ template <typename Scalar>
 inline std::size_t PathSolver<Scalar>::nodes_of(int muscle) {
   PathFlag flag = PathFlag::kFine;
   const Path& path = paths_.muscles_[muscle];
+  if (path.stations.empty()) return 0;
   stations(path);
   detect(path, flag);
   return solve(path, ~0u);

@@ -152,6 +152,15 @@ Eigen::Matrix3d axes_of(const Joint& joint, const Mechanism& mechanism, const Ki
 
 }  // namespace
 
+std::vector<std::string> paths_without_place(const MusculoskeletalSystem& system) {
+  std::vector<std::string> names;
+  for (const Muscle& muscle : system.model().muscles)
+    if (muscle.function) names.push_back(muscle.name());
+  for (const PassivePath& path : system.model().passive_paths)
+    if (path.function) names.push_back(path.name);
+  return names;
+}
+
 JointReactions joint_reactions(const MusculoskeletalSystem& system, const MovedModel& moved, ReactionFrame frame) {
   const Model& model = system.model();
   JointReactions reactions;

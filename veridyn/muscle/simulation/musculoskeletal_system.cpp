@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "veridyn/core/error.hpp"
 #include "veridyn/muscle/path/pose_text.hpp"
 
@@ -53,10 +55,14 @@ void note_points_inside(const Model& model, const Mechanism& mechanism, const Mu
 }
 
 std::string fit_note(const Model& model, const FittedPaths& fit) {
-  std::size_t length = 0, arm = 0, fitted = 0;
+  std::size_t length = 0, arm = 0, fitted = 0, given = 0;
   std::vector<std::string> misfits;
   for (std::size_t m = 0; m < fit.errors().size(); ++m) {
     const PathFitError& e = fit.errors()[m];
+    if (e.given) {
+      ++given;
+      continue;
+    }
     if (!e.fitted) {
       if (e.length > 0.0) misfits.push_back(fmt::format("'{}'", model.muscles[m].name()));
       continue;
@@ -66,13 +72,23 @@ std::string fit_note(const Model& model, const FittedPaths& fit) {
     if (e.moment_arm > fit.errors()[arm].moment_arm) arm = m;
   }
   if (fit.errors().empty()) return "fitted paths: the model has no muscles";
-  std::string note = fmt::format("fitted paths: {} of {} muscles, the others exact", fitted, fit.errors().size());
+  std::string note =
+      fmt::format("fitted paths: {} of {} muscles, the others exact", fitted, fit.errors().size() - given);
   if (!misfits.empty()) note += fmt::format(" ({} because no polynomial is good enough)", fmt::join(misfits, ", "));
   if (fitted > 0)
     note += fmt::format("; largest error of a length {:.1e} m ('{}'), of a moment arm {:.1e} m ('{}')",
                         fit.errors()[length].length, model.muscles[length].name(), fit.errors()[arm].moment_arm,
                         model.muscles[arm].name());
   return note;
+}
+
+/// Muscles whose lengths the model gives as functions of coordinates, for the notes.
+void note_functions(const Model& model, std::vector<std::string>& notes) {
+  const auto given = std::count_if(model.muscles.begin(), model.muscles.end(),
+                                   [](const Muscle& muscle) { return muscle.function.has_value(); });
+  if (given > 0)
+    notes.push_back(fmt::format("lengths of {} of {} muscles are the model's own functions of coordinates", given,
+                                model.muscles.size()));
 }
 
 Model with_changes(Model model, const SystemChanges& changes) {
@@ -102,6 +118,7 @@ MusculoskeletalSystem::MusculoskeletalSystem(Model model, const SystemOptions& o
       source_(options.paths),
       passive_(model_, mechanism_),
       muscles_(muscle_parameters(model_)) {
+  note_functions(model_, notes_);
   note_points_inside(model_, mechanism_, paths_, notes_);
   if (source_ == PathSource::kFitted) {
     PathFitOptions fit_options;

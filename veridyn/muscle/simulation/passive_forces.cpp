@@ -11,6 +11,7 @@ Model with_passive_paths(Model model) {
     along.parameters.name = path.name;
     along.points = path.points;
     along.wraps = path.wraps;
+    along.function = path.function;
     model.muscles.push_back(std::move(along));
   }
   return model;
@@ -36,7 +37,7 @@ void PassiveForces::add_to_links(const Mechanism& mechanism, const Kinematics<do
   paths_->evaluate(kinematics, q, lengths);
   std::vector<double> speed(laws_.size());
   paths_->speeds(lengths, qdot, speed.data());
-  for (std::size_t m = 0; m < laws_.size(); ++m)
+  for (std::size_t m = 0; m < laws_.size(); ++m)  // nothing of paths by functions, which pull at no place
     paths_->add_tension(kinematics, q, static_cast<int>(m), passive_tension(laws_[m], lengths.length[m], speed[m]),
                         pulling, by_link);
 }

@@ -37,7 +37,7 @@ class PassiveForces {
     return made;
   }
 
-  /// Adds the forces themselves, by link. Allocates.
+  /// Adds the forces themselves, by link, but those along paths by functions of coordinates. Allocates.
   void add_to_links(const Mechanism& mechanism, const Kinematics<double>& kinematics, const double* q,
                     const double* qdot, std::span<SpatialVector<double>> by_link) const;
 

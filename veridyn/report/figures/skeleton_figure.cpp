@@ -138,7 +138,7 @@ std::vector<XYPlot> skeleton_figure(const MuscleStudy& study, const MuscleResult
       for (std::size_t m = 0; m < model.muscles.size(); ++m) {
         XYSeries line{.name = model.muscles[m].name(), .style = Style::kLine, .width = 2.4};
         append(line, poses.path(m, arc_points), view, false);
-        plot.series.push_back(std::move(line));
+        if (!line.x.empty()) plot.series.push_back(std::move(line));  // a path by a function is nowhere
       }
     } else {
       XYSeries lines{.name = "muscles", .style = Style::kLine, .width = 1.2, .opacity = 0.7};
