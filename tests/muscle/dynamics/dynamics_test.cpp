@@ -253,6 +253,39 @@ TEST(Dynamics, EnergyStaysInASplineJointAndATree) {
   EXPECT_LT(branches.relative, 1e-8);
 }
 
+// A knee that hangs: its second angle and its translations depend on flexion and varus.
+TEST(Dynamics, EnergyStaysInAJointOfFunctionsOfSeveralCoordinates) {
+  Model knee;
+  knee.gravity = {0.0, -9.81, 0.0};
+  knee.bodies.resize(2);
+  knee.bodies[1].mass = 3.0;
+  knee.bodies[1].mass_center = {0.0, -0.3, 0.02};
+  knee.bodies[1].inertia.diagonal() << 0.05, 0.01, 0.06;
+  Joint joint;
+  joint.name = "knee";
+  joint.child = 1;
+  joint.coordinates = {0, 1};
+  for (int i = 0; i < 3; ++i) joint.translation[i].axis = Eigen::Vector3d::Unit(i);
+  joint.rotation[0].axis = Eigen::Vector3d::UnitZ();
+  joint.rotation[1].axis = Eigen::Vector3d::UnitX();
+  joint.rotation[2].axis = Eigen::Vector3d::UnitY();
+  joint.rotation[0].coordinate = 0;
+  joint.rotation[0].function = numerics::PiecewisePolynomial::linear(1.0, 0.0);
+  const auto of_both = [](TransformAxis& axis, std::vector<double> coefficients) {
+    axis.several = {0, 1};
+    axis.function_of_several = {2, 2, std::move(coefficients)};
+  };
+  of_both(joint.rotation[1], {0.0, 1.0, 0.1, 0.2, 0.3, -0.2});
+  of_both(joint.rotation[2], {0.0, 0.1, 0.2, -0.3, 0.2, 0.1});
+  of_both(joint.translation[0], {0.01, 0.02, -0.05, 0.03, 0.08, 0.04});
+  of_both(joint.translation[1], {-0.4, 0.01, 0.03, 0.02, -0.05, 0.06});
+  knee.joints = {joint};
+  knee.coordinates = {{.name = "flexion"}, {.name = "varus"}};
+  const Drift drift = energy_drift(knee, Eigen::Vector2d(0.4, -0.2), Eigen::Vector2d(0.5, 0.3));
+  EXPECT_TRUE(drift.reached);
+  EXPECT_LT(drift.relative, 1e-8);
+}
+
 // Without anything outside, momentum stays; gravity adds its impulse, and its moment about the mass centre is zero.
 TEST(Dynamics, MomentumOfAFloatingTreeChangesByTheOutsideForcesOnly) {
   RandomStream random(16, "momentum");

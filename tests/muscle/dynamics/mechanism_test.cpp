@@ -26,6 +26,11 @@ Placement pose_by_definition(const Model& model, const Eigen::VectorXd& q, int b
   for (const Joint& joint : model.joints) {
     if (joint.child != body) continue;
     const auto amount = [&](const TransformAxis& a) {
+      if (!a.several.empty()) {
+        std::vector<double> x;
+        for (const int c : a.several) x.push_back(q(c));
+        return a.function_of_several.value(x.data());
+      }
       return a.function.evaluate(a.coordinate < 0 ? 0.0 : q(a.coordinate)).value;
     };
     Placement motion;
@@ -56,13 +61,25 @@ TEST(Mechanism, PosesAreThoseOfTheJointsDefinition) {
   }
 }
 
+/// A random tree whose joints of several coordinates turn about their first axis, too, with all of them.
+Model tree_of_several(RandomStream& random) {
+  Model model = test::random_tree(8, random);
+  for (Joint& joint : model.joints) {
+    if (joint.rotation[1].several.empty()) continue;
+    joint.rotation[0].coordinate = -1;
+    joint.rotation[0].several = joint.translation[0].several;
+    joint.rotation[0].function_of_several = joint.translation[0].function_of_several;
+  }
+  return model;
+}
+
 // Jets along each coordinate: a point of every body must move with the column if its link is beyond the joint, else
 // rest.
 TEST(Mechanism, ColumnsAreTheDerivativesOfThePoses) {
   using Jet = ceres::Jet<double, 1>;
   RandomStream random(2, "columns");
   for (int trial = 0; trial < 10; ++trial) {
-    const Model model = test::random_tree(8, random);
+    const Model model = tree_of_several(random);
     const Mechanism mechanism(model);
     Kinematics<double> k(mechanism);
     Kinematics<Jet> derivative(mechanism);
@@ -91,8 +108,10 @@ TEST(Mechanism, ColumnsAreTheDerivativesOfThePoses) {
 TEST(Mechanism, VelocitiesAndBiasAreTheTimeDerivativesOfThePoses) {
   using Jet = ceres::Jet<double, 1>;
   RandomStream random(3, "bias");
+  int of_several = 0;
   for (int trial = 0; trial < 10; ++trial) {
-    const Model model = test::random_tree(8, random);
+    const Model model = tree_of_several(random);
+    for (const Joint& joint : model.joints) of_several += joint.rotation[0].several.empty() ? 0 : 1;
     const Mechanism mechanism(model);
     Kinematics<Jet> k(mechanism);
     const Eigen::VectorXd q = test::random_state(model.coordinates.size(), 1.8, random);
@@ -121,6 +140,7 @@ TEST(Mechanism, VelocitiesAndBiasAreTheTimeDerivativesOfThePoses) {
       }
     }
   }
+  EXPECT_GT(of_several, 3);
 }
 
 TEST(Mechanism, WeldedBodiesBecomeOneLinkOfTheSameMassAndMoment) {

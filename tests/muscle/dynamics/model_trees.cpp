@@ -4,8 +4,10 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <numeric>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace veridyn::muscle::test {
 namespace {
@@ -46,6 +48,21 @@ numerics::PiecewisePolynomial random_spline(double size, numerics::RandomStream&
   std::array<double, 7> y{};
   for (double& value : y) value = random.uniform(-size, size);
   return numerics::PiecewisePolynomial::simm_spline(x, y);
+}
+
+/// The axis moves by `slope` times the first of these coordinates and a small polynomial in all of them.
+void set_axis_of_several(TransformAxis& axis, const Eigen::Vector3d& direction, std::vector<int> coordinates, int order,
+                         double slope, numerics::RandomStream& random) {
+  using numerics::MultivariatePolynomial;
+  const int n = static_cast<int>(coordinates.size());
+  std::vector<double> c(MultivariatePolynomial::terms(n, order));
+  for (double& x : c) x = random.uniform(-0.06, 0.06);
+  const std::vector<MultivariatePolynomial::Powers> powers = MultivariatePolynomial::powers(n, order);
+  for (std::size_t t = 0; t < powers.size(); ++t)
+    if (std::accumulate(powers[t].begin(), powers[t].end(), 0) == 1 && powers[t][0] == 1) c[t] += slope;
+  axis.axis = direction.normalized();
+  axis.several = std::move(coordinates);
+  axis.function_of_several = {n, order, c};
 }
 
 }  // namespace
@@ -171,6 +188,18 @@ Joint& add_joint(Model& model, TreeJoint kind, int parent, int child, numerics::
       rotation(2, y + random_vector(0.3, random));
       joint.translation[2].function = numerics::PiecewisePolynomial::constant(random.uniform(-0.2, 0.2));
       break;
+    case TreeJoint::kSeveral: {
+      const int a = new_coordinate(model, joint, CoordinateMotion::kRotational);
+      const int b = new_coordinate(model, joint, CoordinateMotion::kRotational);
+      const int c = new_coordinate(model, joint, CoordinateMotion::kRotational);
+      set_axis(joint.rotation[0], z + random_vector(0.2, random), a, linear());
+      set_axis_of_several(joint.rotation[1], x + random_vector(0.2, random), {b, a}, 2, 1.0, random);
+      set_axis_of_several(joint.rotation[2], y + random_vector(0.2, random), {c, b}, 3, 1.0, random);
+      set_axis_of_several(joint.translation[0], x, {c, b, a}, 3, 0.2, random);
+      set_axis(joint.translation[1], y, a, random_spline(0.05, random));
+      set_axis_of_several(joint.translation[2], z, {a, c}, 1, 0.1, random);
+      break;
+    }
   }
   model.joints.push_back(joint);
   return model.joints.back();

@@ -13,9 +13,11 @@ namespace veridyn::muscle::test {
 
 /// Universal: two rotations about x and y. Planar: two translations, then a rotation. Spline: rotation and two
 /// translations by splines of one coordinate, like OpenSim's knees. Free: three translations, rotations x, y, z.
-/// Gimbal: three rotations about axes that are not orthogonal, with a constant translation.
-enum class TreeJoint { kPin, kSlider, kUniversal, kPlanar, kSpline, kFree, kGimbal };
-constexpr int kTreeJoints = 7;
+/// Gimbal: three rotations about axes that are not orthogonal, with a constant translation. Several: rotations and
+/// translations by polynomials in three angles; the first rotation by the first one alone, the third not by it, as
+/// Simbody's velocity terms have it.
+enum class TreeJoint { kPin, kSlider, kUniversal, kPlanar, kSpline, kFree, kGimbal, kSeveral };
+constexpr int kTreeJoints = 8;
 
 [[nodiscard]] Eigen::Vector3d random_vector(double size, numerics::RandomStream& random);
 [[nodiscard]] Placement random_placement(numerics::RandomStream& random);

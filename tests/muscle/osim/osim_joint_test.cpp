@@ -106,7 +106,8 @@ TEST(OsimJoint, MistakesAreNamedWithTheJoint) {
   };
   refused("CustomJoint", transform(axis("rotation4", "q", 1.0)), "is none of rotation1 to rotation3");
   refused("CustomJoint", transform(with(axis("rotation1", "q", 1.0), "0 0 2", "0 0 0")), "has no direction");
-  refused("CustomJoint", transform(axis("rotation1", "q p", 1.0)), "functions of several coordinates");
+  refused("CustomJoint", transform(axis("rotation1", "q p", 1.0)), "coordinates: there is no coordinate 'p'");
+  refused("CustomJoint", transform(axis("rotation1", "q q", 1.0)), "coordinates: 'q' stands there twice");
   EXPECT_THAT(joint_error(with(one_joint("PinJoint", ""), "/ground<", "/bodyset/link<")),
               HasSubstr("a joint cannot connect a body to itself"));
 }
@@ -116,6 +117,30 @@ Pose<double> pose_of(const Model& model, const Eigen::VectorXd& q, const char* b
   Kinematics<double> kinematics(mechanism);
   update_positions(mechanism, q.data(), kinematics);
   return body_pose(mechanism, kinematics, model.body(body));
+}
+
+// A knee that slides with flexion and varus together.
+TEST(OsimJoint, AxesMayMoveWithSeveralCoordinates) {
+  const std::string slide =
+      "<TransformAxis name=\"translation2\"><coordinates>flexion varus</coordinates><axis>0 1 0</axis>"
+      "<MultivariatePolynomialFunction name=\"function\"><coefficients>0.1 0.2 0.3 -0.4 0.5 -0.6</coefficients>"
+      "<dimension>2</dimension><order>2</order></MultivariatePolynomialFunction></TransformAxis>";
+  const std::string twist =
+      "<TransformAxis name=\"rotation2\"><coordinates>varus flexion</coordinates><axis>0 1 0</axis><function>"
+      "<LinearFunction><coefficients>0.5 0.25 0.125</coefficients></LinearFunction></function></TransformAxis>";
+  const Model model =
+      read_joint("CustomJoint", coordinates({"flexion", "varus"}) + "<SpatialTransform>" +
+                                    axis("rotation1", "flexion", 1.0) + twist + slide + "</SpatialTransform>");
+  EXPECT_THAT(model.joints[0].translation[1].several, testing::ElementsAre(0, 1));
+  EXPECT_THAT(model.joints[0].rotation[1].several, testing::ElementsAre(1, 0));
+  EXPECT_EQ(model.coordinates[1].motion, CoordinateMotion::kCoupled);
+  const double f = 0.3, v = -0.2;
+  const Pose<double> pose = pose_of(model, Eigen::Vector2d(f, v), "link");
+  EXPECT_NEAR(pose.position.y(), 0.1 + 0.2 * v + 0.3 * v * v - 0.4 * f + 0.5 * f * v - 0.6 * f * f, 1e-15);
+  const Eigen::Matrix3d expected = (Eigen::AngleAxisd(f, Eigen::Vector3d::UnitZ()) *
+                                    Eigen::AngleAxisd(0.5 * v + 0.25 * f + 0.125, Eigen::Vector3d::UnitY()))
+                                       .toRotationMatrix();
+  EXPECT_LT((pose.rotation - expected).norm(), 1e-14);
 }
 
 TEST(OsimJoint, ReversedOnesGiveTheParentInTheChild) {

@@ -38,6 +38,15 @@ namespace veridyn::muscle::test {
                          const numerics::FunctionValue<double> v = f.evaluate(x);
                          return std::array<double, 3>{v.value, v.slope, v.curvature};
                        }};
+      joint.axes[i].several = axis.several;
+      joint.axes[i].of_several = [f = axis.function_of_several](const std::vector<int>& by,
+                                                                const std::vector<double>& x) {
+        std::vector<double> gradient(x.size()), hessian(x.size() * x.size());
+        const double value = f.evaluate(x.data(), gradient.data(), hessian.data());
+        if (by.empty()) return value;
+        const auto first = static_cast<std::size_t>(by[0]);
+        return by.size() == 1 ? gradient[first] : hessian[first * x.size() + static_cast<std::size_t>(by[1])];
+      };
     }
     tree.joints.push_back(std::move(joint));
   }

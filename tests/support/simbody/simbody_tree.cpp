@@ -63,19 +63,30 @@ void add_constraint(const TreeDescription::Constraint& c, SimTK::MobilizedBody& 
   }
 }
 
-/// A function of no (a constant) or one coordinate.
+/// A function of no (a constant), one, or several coordinates.
 class AxisFunction : public SimTK::Function {
  public:
   explicit AxisFunction(TreeDescription::Axis axis) : axis_(std::move(axis)) {}
-  double calcValue(const SimTK::Vector& x) const override { return axis_.function(constant() ? 0.0 : x[0])[0]; }
+  double calcValue(const SimTK::Vector& x) const override {
+    if (!axis_.several.empty()) return axis_.of_several({}, arguments(x));
+    return axis_.function(constant() ? 0.0 : x[0])[0];
+  }
   double calcDerivative(const SimTK::Array_<int>& order, const SimTK::Vector& x) const override {
+    if (!axis_.several.empty()) return axis_.of_several({order.begin(), order.end()}, arguments(x));
     return axis_.function(x[0])[order.size()];
   }
-  int getArgumentSize() const override { return constant() ? 0 : 1; }
+  int getArgumentSize() const override {
+    return axis_.several.empty() ? (constant() ? 0 : 1) : static_cast<int>(axis_.several.size());
+  }
   int getMaxDerivativeOrder() const override { return 2; }
 
  private:
   bool constant() const { return axis_.coordinate < 0; }
+  static std::vector<double> arguments(const SimTK::Vector& x) {
+    std::vector<double> values;
+    for (int i = 0; i < x.size(); ++i) values.push_back(x[i]);
+    return values;
+  }
   TreeDescription::Axis axis_;
 };
 
@@ -136,9 +147,9 @@ SimbodyTree::SimbodyTree(const TreeDescription& model) : system_(std::make_uniqu
         const TreeDescription::Axis& axis = joint.axes[i];
         functions.push_back(new AxisFunction(axis));
         SimTK::Array_<int> index;
-        for (std::size_t c = 0; c < joint.coordinates.size(); ++c) {
-          if (joint.coordinates[c] == axis.coordinate) index.push_back(static_cast<int>(c));
-        }
+        for (const int wanted : axis.several.empty() ? std::vector<int>{axis.coordinate} : axis.several)
+          for (std::size_t c = 0; c < joint.coordinates.size(); ++c)
+            if (joint.coordinates[c] == wanted) index.push_back(static_cast<int>(c));
         indices.push_back(index);
         axes.push_back(vec(axis.direction));
       }

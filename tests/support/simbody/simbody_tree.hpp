@@ -24,6 +24,9 @@ struct TreeDescription {
     int coordinate;  ///< -1: none
     /// Value, slope and curvature.
     std::function<std::array<double, 3>(double)> function;
+    std::vector<int> several{};  ///< coordinates, in place of both, of
+    /// the value at x, or its derivative by one or two arguments.
+    std::function<double(const std::vector<int>& by, const std::vector<double>& x)> of_several{};
   };
   /// As OpenSim builds a joint: of functions of coordinates, or by the mobilizer of its own type.
   enum class Mobilizer { kFunctions, kUniversal, kBall, kGimbal, kPlanar, kFree, kEllipsoid };

@@ -10,7 +10,9 @@
 namespace veridyn::muscle {
 namespace {
 
-bool moves(const TransformAxis& axis) { return axis.coordinate >= 0 && !axis.function.is_constant(); }
+bool moves(const TransformAxis& axis) {
+  return !axis.several.empty() || (axis.coordinate >= 0 && !axis.function.is_constant());
+}
 
 double constant_of(const TransformAxis& axis) { return axis.function.evaluate(0.0).value; }
 
@@ -37,6 +39,14 @@ JointAxis compile(const TransformAxis& from, bool rotational) {
   JointAxis axis;
   axis.coordinate = from.coordinate;
   axis.rotational = rotational;
+  if (!from.several.empty()) {
+    axis.coordinate = from.several.front();
+    axis.linear = false;
+    axis.derivatives = 0;  // their place is known when all joints are
+    axis.several = from.several;
+    axis.function_of_several = from.function_of_several;
+    return axis;
+  }
   axis.linear = from.function.is_linear();
   const numerics::FunctionValue<double> f = from.function.evaluate(0.0);
   axis.slope = f.slope;
@@ -180,13 +190,19 @@ Mechanism::Mechanism(const Model& model)
     of_child = static_cast<int>(j);
     for (int i = 0; i < 6; ++i) {
       const TransformAxis& axis = i < 3 ? joint.rotation[i] : joint.translation[i - 3];
-      if (axis.coordinate >= 0 &&
-          std::find(joint.coordinates.begin(), joint.coordinates.end(), axis.coordinate) == joint.coordinates.end()) {
-        const std::string name = at(axis.coordinate) < model.coordinates.size()
-                                     ? model.coordinates[axis.coordinate].name
-                                     : std::to_string(axis.coordinate);
+      const auto check_own = [&](int coordinate) {
+        if (std::find(joint.coordinates.begin(), joint.coordinates.end(), coordinate) != joint.coordinates.end())
+          return;
+        const std::string name = coordinate >= 0 && at(coordinate) < model.coordinates.size()
+                                     ? model.coordinates[coordinate].name
+                                     : std::to_string(coordinate);
         throw InputError(place, fmt::format("it moves by coordinate '{}', which is not its own", name));
-      }
+      };
+      if (axis.coordinate >= 0) check_own(axis.coordinate);
+      for (const int coordinate : axis.several) check_own(coordinate);
+      if (at(axis.function_of_several.arguments()) != axis.several.size())
+        throw InputError(place, fmt::format("a function of {} arguments is given {} coordinates",
+                                            axis.function_of_several.arguments(), axis.several.size()));
     }
   }
   check(model, joint_of_body);
@@ -232,6 +248,14 @@ Mechanism::Mechanism(const Model& model)
   for (std::size_t c = 0; c < coordinate_link_.size(); ++c) {
     if (coordinate_link_[c] < 0) {
       throw InputError(fmt::format("coordinate '{}'", model.coordinates[c].name), "it belongs to no joint");
+    }
+  }
+  int derivatives = 0;
+  for (Link& link : links_) {
+    for (JointAxis& axis : link.axes) {
+      if (axis.several.empty()) continue;
+      axis.derivatives = derivatives;
+      derivatives += static_cast<int>(axis.several.size() * (axis.several.size() + 1));
     }
   }
   row_.push_back(0);

@@ -36,6 +36,11 @@ struct JointAxis {
   /// body-fixed x-y-z sequence of angles a = `coordinate`, b = `second`; amount = slope n(ellipsoid). -1: none.
   int ellipsoid = -1;
   int second = -1;
+  /// Of several coordinates: amount = function_of_several of them, `coordinate` is the first one, and derivatives begin
+  /// there in Kinematics::of_several. -1: of one.
+  int derivatives = -1;
+  std::vector<int> several{};
+  numerics::MultivariatePolynomial function_of_several{};
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();       ///< of a translation, in the frame after the axis before it
   Eigen::Matrix3d before = Eigen::Matrix3d::Identity();  ///< of a rotation, in the frame after the rotation before it
 };
@@ -130,6 +135,7 @@ struct Kinematics {
     Scalar slope_2{}, curvature_2{}, mixed{};  ///< by the second coordinate of an ellipsoid, twice, and by both
   };
   std::vector<AxisMotion> axis_motion;  ///< of all such joints, link after link
+  std::vector<Scalar> of_several;       ///< of axes with several coordinates: gradients, each with its Hessian after it
 };
 
 /// Fills `pose` and `columns` for coordinates q (one per coordinate of the mechanism, rad or m). Does not allocate.
@@ -156,11 +162,13 @@ Kinematics<Scalar>::Kinematics(const Mechanism& mechanism)
       columns(static_cast<std::size_t>(mechanism.coordinates())),
       velocity(pose.size()),
       velocity_bias(pose.size()) {
-  std::size_t n = 0;
+  std::size_t n = 0, derivatives = 0;
   for (int i = 1; i < mechanism.links(); ++i) {
     if (!mechanism.link(i).simple) n += mechanism.link(i).axes.size();
+    for (const JointAxis& axis : mechanism.link(i).axes) derivatives += axis.several.size() * (axis.several.size() + 1);
   }
   axis_motion.resize(n);
+  of_several.resize(derivatives);
 }
 
 namespace internal {
@@ -200,6 +208,30 @@ Scalar over_ellipsoid(const JointAxis& axis, const Scalar* q, Motion& motion) {
   motion.mixed = c * sb;
   motion.curvature_2 = s * cb;
   return -s * cb;
+}
+
+/// Amount of an axis with several coordinates: returns its value, fills derivatives.
+template <typename Scalar>
+Scalar by_several(const JointAxis& axis, const Scalar* q, Kinematics<Scalar>& k) {
+  Scalar x[numerics::MultivariatePolynomial::kMostArguments];
+  const std::size_t n = axis.several.size();
+  for (std::size_t i = 0; i < n; ++i) x[i] = q[axis.several[i]];
+  Scalar* const gradient = k.of_several.data() + axis.derivatives;
+  return axis.function_of_several.evaluate(x, gradient, gradient + n);
+}
+
+/// Adds what an axis with several coordinates moves by at the speeds qdot: to its rate, and to the part of its
+/// acceleration that is there without those of coordinates.
+template <typename Scalar>
+void add_rates_of_several(const JointAxis& axis, const Scalar* qdot, const Kinematics<Scalar>& k, Scalar& rate,
+                          Scalar& bend) {
+  const std::size_t n = axis.several.size();
+  const Scalar* const gradient = k.of_several.data() + axis.derivatives;
+  const Scalar* row = gradient + n;
+  for (std::size_t i = 0; i < n; ++i, row += n) {
+    rate += gradient[i] * qdot[axis.several[i]];
+    for (std::size_t j = 0; j < n; ++j) bend += row[j] * qdot[axis.several[i]] * qdot[axis.several[j]];
+  }
 }
 
 /// frame Rz(angle)
@@ -257,6 +289,9 @@ void update_positions(const Mechanism& mechanism, const Scalar* q, Kinematics<Sc
       const Scalar& x = q[axis.coordinate];
       if (axis.ellipsoid >= 0) {
         f.value = internal::over_ellipsoid(axis, q, *motion);
+      } else if (axis.derivatives >= 0) {
+        f.value = internal::by_several(axis, q, k);
+        motion->slope = motion->curvature = Scalar(0.0);
       } else {
         if (axis.linear) {
           f = {axis.slope * x + axis.intercept, Scalar(axis.slope), Scalar(0.0)};
@@ -282,6 +317,8 @@ void update_positions(const Mechanism& mechanism, const Scalar* q, Kinematics<Sc
     for (const JointAxis& axis : link.axes) {
       k.columns[axis.coordinate].add_scaled(m->slope, m->unit);
       if (axis.ellipsoid >= 0) k.columns[axis.second].add_scaled(m->slope_2, m->unit);
+      for (std::size_t j = 0; j < axis.several.size(); ++j)
+        k.columns[axis.several[j]].add_scaled(k.of_several[static_cast<std::size_t>(axis.derivatives) + j], m->unit);
       ++m;
     }
   }
@@ -318,6 +355,8 @@ void update_velocities(const Mechanism& mechanism, const Scalar* qdot, Kinematic
         const Scalar& other = qdot[axis.second];
         rate += motion->slope_2 * other;
         bend += (motion->curvature_2 * other + motion->mixed * speed * Scalar(2.0)) * other;
+      } else if (axis.derivatives >= 0) {
+        internal::add_rates_of_several(axis, qdot, k, rate, bend);
       }
       bias.add_scaled(rate, cross_motion(V, motion->unit));
       bias.add_scaled(bend, motion->unit);

@@ -123,6 +123,22 @@ void classify(Context& context, const Joint& joint) {
   }
 }
 
+/// A motion of more than one coordinate of the joint.
+void read_axis_of_several(const Context& context, const Element& source, const std::vector<std::string>& names,
+                          const Joint& joint, TransformAxis& axis) {
+  const Element function = find_function(source, "function");
+  if (!function) source.fail("function", "missing");
+  for (const std::string& name : names) {
+    const int index = context.coordinate(source, "coordinates", name);
+    if (std::find(joint.coordinates.begin(), joint.coordinates.end(), index) == joint.coordinates.end())
+      source.fail("coordinates", fmt::format("'{}' is not a coordinate of joint '{}'", name, joint.name));
+    if (std::find(axis.several.begin(), axis.several.end(), index) != axis.several.end())
+      source.fail("coordinates", fmt::format("'{}' stands there twice", name));
+    axis.several.push_back(index);
+  }
+  axis.function_of_several = read_function_of_several(function, names.size());
+}
+
 void read_spatial_transform(Context& context, const Element& element, Joint& joint) {
   const Element transform = element.child("SpatialTransform");
   if (!transform) element.fail("SpatialTransform", "missing");
@@ -140,8 +156,11 @@ void read_spatial_transform(Context& context, const Element& element, Joint& joi
     if (!(direction.norm() > 1e-12)) source.fail("axis", "has no direction");
     axis.axis = direction.normalized();
     const std::vector<std::string> names = source.words(source.has("coordinates") ? "coordinates" : "coordinate");
-    if (names.size() > 1) source.fail("coordinates", "functions of several coordinates are not understood");
     const Element function = find_function(source, "function");
+    if (names.size() > 1) {
+      read_axis_of_several(context, source, names, joint, axis);
+      continue;
+    }
     if (function) axis.function = read_function(function);
     if (names.empty()) {
       // A function without a coordinate has no argument: it has to be a constant.
