@@ -11,7 +11,8 @@ if [ $# -eq 0 ]; then
 fi
 "$build/bin/fuzz_seeds" "$build/fuzz-corpus"
 mkdir -p "$build/fuzz-corpus/osim"
-cp "$(dirname "$0")"/../veridyn/muscle/osim/models/*.osim "$build/fuzz-corpus/osim/"
+cp "$(dirname "$0")"/../veridyn/muscle/osim/models/*.osim "$(dirname "$0")"/../examples/studies/muscle/*.osim \
+  "$build/fuzz-corpus/osim/"
 # What a target says is printed when it ends, so that those that run alongside each other can be read.
 # shellcheck disable=SC2016
 printf '%s\n' "$@" | xargs -P "${JOBS:-1}" -n 1 sh -c '
