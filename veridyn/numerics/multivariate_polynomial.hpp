@@ -56,6 +56,8 @@ class MultivariatePolynomial {
   template <int kDerivatives, typename Scalar>
   void sum(int a, int left, const Scalar* x, const double*& end, Sum<Scalar, kDerivatives>& s) const;
   template <typename Scalar>
+  Scalar of_one(const Scalar& x, Scalar* gradient) const;
+  template <typename Scalar>
   Scalar of_two(const Scalar& x, const Scalar& y, Scalar* gradient) const;
 
   int arguments_ = 0;
@@ -104,9 +106,22 @@ void MultivariatePolynomial::sum(int a, int left, const Scalar* x, const double*
   }
 }
 
-/// The usual case of fitted paths.
+// The usual cases of fitted paths.
+
 template <typename Scalar>
-Scalar MultivariatePolynomial::of_two(const Scalar& x, const Scalar& y, Scalar* gradient) const {
+inline Scalar MultivariatePolynomial::of_one(const Scalar& x, Scalar* gradient) const {
+  const double* const c = coefficients_.data();
+  Scalar v(c[order_]), d(0.0);
+  for (int i = order_ - 1; i >= 0; --i) {
+    d = d * x + v;
+    v = v * x + Scalar(c[i]);
+  }
+  gradient[0] = d;
+  return v;
+}
+
+template <typename Scalar>
+inline Scalar MultivariatePolynomial::of_two(const Scalar& x, const Scalar& y, Scalar* gradient) const {
   Scalar value(0.0), by_x(0.0), by_y(0.0);
   const double* row = coefficients_.data() + coefficients_.size();
   for (int j = order_; j >= 0; --j) {
@@ -135,7 +150,8 @@ Scalar MultivariatePolynomial::value(const Scalar* x) const {
 }
 
 template <typename Scalar>
-Scalar MultivariatePolynomial::evaluate(const Scalar* x, Scalar* gradient) const {
+inline Scalar MultivariatePolynomial::evaluate(const Scalar* x, Scalar* gradient) const {
+  if (arguments_ == 1) return of_one(x[0], gradient);
   if (arguments_ == 2) return of_two(x[0], x[1], gradient);
   Sum<Scalar, 1> s;
   const double* end = coefficients_.data() + coefficients_.size();
