@@ -81,6 +81,19 @@ TEST(EstimateDelay, SaysWhenItIsNotDetermined) {
   EXPECT_FALSE(estimate_delay(a, std::vector<double>(4000, 1.0), 100.0).determined);
 }
 
+// Near its peak the correlation of a slow signal falls by less than the weights of a short sinc differ from one.
+TEST(EstimateDelay, OfASlowSignalIsExactBetweenSamples) {
+  const auto slow = [](double t) { return std::sin(1.7 * t) + std::sin(2.9 * t + 1.0) + std::sin(0.8 * t + 2.0); };
+  for (const double delay : {0.0, 0.0025, 0.005, 0.0071, -0.0034}) {
+    std::vector<double> a, b;
+    for (int k = 0; k < 6000; ++k) {
+      a.push_back(slow(0.01 * k));
+      b.push_back(slow(0.01 * k - delay));
+    }
+    EXPECT_NEAR(estimate_delay(a, b, 100.0).delay_s, delay, 5e-4) << delay;
+  }
+}
+
 TEST(EstimateDelay, ToleratesGaps) {
   const Sines s(2);
   std::vector<double> a, b;

@@ -46,6 +46,42 @@ TEST(Delays, SmallOnesAreLeftAloneAndAnOppositeSignIsNamed) {
   EXPECT_THAT(opposite.text, HasSubstr("opposite sign"));
 }
 
+// An aircraft answers the gust that its vane shows, against it and late: correlation finds a delay where there is none.
+TEST(Delays, ADisturbanceThatIsAnsweredIsInTheError) {
+  double earlier = 0.0;
+  for (const double gust : {0.0, 0.3, 0.6, 1.0}) {
+    const std::vector<double> motion = lively(20000, "motion"), air = lively(20000, "gust");
+    std::vector<double> expected(motion.size()), observed(motion.size());
+    double answer = 0.0;
+    for (std::size_t k = 0; k < motion.size(); ++k) {
+      answer += 0.1 * (-air[k] - answer);
+      expected[k] = motion[k] + gust * answer;
+      observed[k] = expected[k] + gust * air[k];
+    }
+    const DelayReport as_noise = shared_delay("vane", "motion", {{expected, observed}}, kLivelyRate_Hz, {});
+    const DelayReport answered = shared_delay(
+        "vane", "motion", {{.expected = expected, .observed = observed, .noise_variance = 0.0}}, kLivelyRate_Hz, {});
+    EXPECT_EQ(answered.delay_s, as_noise.delay_s);
+    EXPECT_LE(std::abs(answered.delay_s), 1e-6 + 1.96 * answered.sigma_s) << gust;
+    EXPECT_FALSE(answered.applied) << gust << ": " << answered.delay_s;
+    EXPECT_GE(answered.sigma_s, earlier) << gust;
+    earlier = answered.sigma_s;
+    if (gust == 0.6) {
+      EXPECT_GT(std::abs(as_noise.delay_s), 3.0 * as_noise.sigma_s) << "the test shows nothing";
+    }
+  }
+  EXPECT_GT(earlier, kDelayMatters_s / 3.0);
+}
+
+TEST(Delays, WhatIsInDoubtIsInTheError) {
+  const std::vector<double> a = lively(3000, "a");
+  const DelayReport report = shared_delay(
+      "vane", "motion", {{.expected = a, .observed = later(a, 5), .doubted = later(a, 3)}}, kLivelyRate_Hz, {});
+  EXPECT_NEAR(report.delay_s, 0.05, 0.003);
+  EXPECT_NEAR(report.sigma_s, 0.03, 0.003);
+  EXPECT_EQ(report.text.substr(0, 19), "not determined: 0.0");
+}
+
 TEST(Delays, ClockForOthersMustBeFastAndLongEnoughAndIsSearchedInItsMiddle) {
   EXPECT_FALSE(BandLimited::around(channel("gyro_x", 10.0, 60.0), 4.0).has_value());
   EXPECT_FALSE(BandLimited::around(channel("gyro_x", 100.0, 5.0), 4.0).has_value());

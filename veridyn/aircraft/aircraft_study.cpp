@@ -13,6 +13,7 @@
 #include "veridyn/aircraft/identification/parameter_groups.hpp"
 #include "veridyn/aircraft/identification/recording_evidence.hpp"
 #include "veridyn/aircraft/reconstruction/filter_comparison.hpp"
+#include "veridyn/aircraft/reconstruction/reconstruct_streams.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::aircraft {
@@ -86,7 +87,8 @@ Reconstruction motion_of(const Recording& recording, const ReconstructOptions& o
 PreparedFlight reconstructed(const FlightStudy& study, const ReconstructOptions& options, Progress& progress) {
   check_flight(study);
   progress.stage("aligning sensor delays");
-  AlignedRecording aligned = align_delays(study.mapped, study.delays, progress);
+  AlignedRecording aligned = align_delays(
+      study.mapped, internal::alignment_of(study.mapped.recording, study.delays, study.reconstruct), progress);
   PreparedFlight flight;
   flight.aligned = std::move(aligned.mapped);
   flight.delays = std::move(aligned.delays);

@@ -159,7 +159,8 @@ estimation::Estimate TrackedFlight::estimate() const { return judged_estimate(tr
 
 TrackingAnalysis track_flight(const FlightStudy& study, Progress& progress) {
   progress.stage("aligning sensor delays");
-  const AlignedRecording aligned = align_delays(study.mapped, study.delays, progress);
+  const AlignedRecording aligned = align_delays(
+      study.mapped, internal::alignment_of(study.mapped.recording, study.delays, study.reconstruct), progress);
   TrackingAnalysis analysis{aligned.delays, TrackedFlight(study), false};
   progress.stage("tracking");
   static_cast<void>(analysis.flight.advance(aligned.mapped, study, true, progress, aligned.delays));

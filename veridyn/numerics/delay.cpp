@@ -54,14 +54,17 @@ double correlation_at(const Centred& a, const Centred& b, std::ptrdiff_t lag) {
 
 double interpolated(const std::vector<double>& c, double position) {
   const auto centre_index = static_cast<std::ptrdiff_t>(std::floor(position));
-  double sum = 0.0;
+  // Over the sum of the weights, which a short sinc leaves 1e-3 off one: as much as a slow signal's peak is high.
+  double sum = 0.0, weights = 0.0;
   for (std::ptrdiff_t j = centre_index - kSincHalfWidth + 1; j <= centre_index + kSincHalfWidth; ++j) {
     const double u = position - static_cast<double>(j);
     const double taper = std::cos(0.5 * kPi * u / static_cast<double>(kSincHalfWidth));
     const double sinc = std::abs(u) < 1e-12 ? 1.0 : std::sin(kPi * u) / (kPi * u);
-    sum += c[j] * sinc * taper * taper;
+    const double weight = sinc * taper * taper;
+    sum += weight * c[j];
+    weights += weight;
   }
-  return sum;
+  return sum / weights;
 }
 
 /// Where the sampled correlation c, of sign `sign`, is largest: golden-section search one lag to either side of `peak`.
@@ -80,16 +83,20 @@ double refined_peak(const std::vector<double>& c, double peak, double sign) {
   return 0.5 * (low + high);
 }
 
-/// The standard deviation of a delay [s]: from the mean square bandwidth, by the curvature of the reference's own
-/// autocorrelation, and from how many independent samples differ.
-double delay_sigma(const Centred& a, const Centred& b, const DelayEstimate& found, double rate_Hz) {
+/// Mean square bandwidth [rad^2/s^2]: the curvature of the reference's own autocorrelation.
+double mean_square_bandwidth(const Centred& a, double rate_Hz) {
   double slope2 = 0.0;
   for (std::size_t k = 1; k < a.value.size(); ++k) {
     const double step = (a.value[k] - a.value[k - 1]) * a.known[k] * a.known[k - 1];
     slope2 += step * step;
   }
+  return slope2 * rate_Hz * rate_Hz / a.power;
+}
+
+/// The standard deviation of a delay [s]: from the mean square bandwidth and from how many independent samples differ.
+double delay_sigma(const Centred& a, const Centred& b, const DelayEstimate& found, double rate_Hz) {
   const double c2 = std::max(found.correlation * found.correlation, 1e-12);
-  const double bandwidth2 = slope2 * rate_Hz * rate_Hz / a.power;
+  const double bandwidth2 = found.bandwidth_rad_s * found.bandwidth_rad_s;
   const auto n = signed_index(a.value.size());
   const auto lag = static_cast<std::ptrdiff_t>(std::llround(found.delay_s * rate_Hz));
   std::vector<double> mismatch;
@@ -144,6 +151,7 @@ DelayEstimate estimate_delay(std::span<const double> reference, std::span<const 
       result.side_peak = std::max(result.side_peak, here / std::abs(result.correlation));
     }
   }
+  result.bandwidth_rad_s = std::sqrt(mean_square_bandwidth(a, rate_Hz));
   result.sigma_s = delay_sigma(a, b, result, rate_Hz);
   if (std::abs(result.correlation) < options.min_correlation) {
     result.reason = "the signals correlate too little";

@@ -14,8 +14,9 @@ struct DelayOptions {
 
 /// How much later `delayed` shows what `reference` shows.
 struct DelayEstimate {
-  double delay_s = 0.0;      ///< positive when `delayed` is later
-  double sigma_s = 0.0;      ///< standard error: (1 - c^2)/c^2 over the effective samples and the mean square bandwidth
+  double delay_s = 0.0;  ///< positive when `delayed` is later
+  double sigma_s = 0.0;  ///< standard error: (1 - c^2)/c^2 over the effective samples and the mean square bandwidth
+  double bandwidth_rad_s = 0.0;  ///< of the reference: root mean square of its derivative over its own
   double correlation = 0.0;  ///< normalised cross-correlation c at the peak, signed: -1 when one has the opposite sign
   double at_zero = 0.0;      ///< the same without shifting
   double side_peak = 0.0;    ///< height of the highest other maximum over the peak's

@@ -19,7 +19,35 @@ numerics::LowPassDesign design(double rate_Hz, double band_Hz) {
   return {.rate_Hz = rate_Hz, .pass_Hz = band_Hz, .stop_Hz = 1.5 * band_Hz};
 }
 
+/// How far disturbances that are answered may shift a delay [s], see `shared_delay`.
+double bias_by_answers(const std::vector<DelayPair>& pairs, const numerics::DelayEstimate& found) {
+  /// How well a noise floor is known.
+  constexpr double kNoiseDoubt = 0.1;
+  /// An answer that is larger than the disturbance, as of a badly damped Dutch roll.
+  constexpr double kAmplified = 2.0;
+  double noise = 0.0, power = 0.0;
+  bool answered = false;
+  for (const DelayPair& pair : pairs) {
+    answered = answered || pair.noise_variance.has_value();
+    for (const double v : pair.observed) {
+      if (!std::isfinite(v)) continue;
+      power += v * v;
+      noise += pair.noise_variance.value_or(0.0);
+    }
+  }
+  const double c2 = found.correlation * found.correlation;
+  if (!answered || !(c2 > 0.0) || !(power > 0.0) || !(found.bandwidth_rad_s > 0.0)) return 0.0;
+  const double share = std::max(1.0 - c2 - noise / power, kNoiseDoubt * noise / power);
+  return kAmplified * share / (c2 * found.bandwidth_rad_s);
+}
+
 }  // namespace
+
+std::string text_of_small(const DelayReport& report, double least_s, const DelayOptions& options) {
+  return least_s > kDelayMatters_s && least_s > options.min_delay_s
+             ? fmt::format("not determined: {:.3f} +- {:.3f} s", report.delay_s, report.sigma_s)
+             : "too small to matter";
+}
 
 void DelayOptions::read_keys(const StudyTable& table, const std::vector<DelayGroup>& groups) {
   automatic = table.flag_or("automatic", automatic);
@@ -77,24 +105,33 @@ BandLimited::Series BandLimited::angle_derivative(const Channel& channel) const 
 DelayReport shared_delay(std::string group, std::string reference, const std::vector<DelayPair>& pairs, double rate_Hz,
                          const DelayOptions& options) {
   // Laid end to end, with a hole between them that is longer than any shift.
-  std::vector<double> expected, observed;
+  std::vector<double> expected, doubted, observed;
+  bool in_doubt = false;
   const auto hole = static_cast<std::size_t>(2.0 * options.max_delay_s * rate_Hz) + 1;
+  const auto append = [&](std::vector<double>& to, const std::vector<double>& x) {
+    to.insert(to.end(), x.begin(), x.end());
+    to.insert(to.end(), hole, kNaN);
+  };
   for (const DelayPair& pair : pairs) {
-    expected.insert(expected.end(), pair.expected.begin(), pair.expected.end());
-    observed.insert(observed.end(), pair.observed.begin(), pair.observed.end());
-    expected.insert(expected.end(), hole, kNaN);
-    observed.insert(observed.end(), hole, kNaN);
+    append(expected, pair.expected);
+    append(observed, pair.observed);
+    append(doubted, pair.doubted.empty() ? pair.expected : pair.doubted);
+    in_doubt = in_doubt || !pair.doubted.empty();
   }
-  const numerics::DelayEstimate found =
-      numerics::estimate_delay(expected, observed, rate_Hz, {.max_delay_s = options.max_delay_s});
-  DelayReport report{
-      std::move(group), std::move(reference), found.delay_s, found.sigma_s, found.correlation, false, ""};
+  const auto search = [&](const std::vector<double>& reference_signal) {
+    return numerics::estimate_delay(reference_signal, observed, rate_Hz, {.max_delay_s = options.max_delay_s});
+  };
+  const numerics::DelayEstimate found = search(expected);
+  const double doubt = in_doubt ? search(doubted).delay_s - found.delay_s : 0.0;
+  const double sigma = std::hypot(found.sigma_s, doubt, bias_by_answers(pairs, found));
+  DelayReport report{std::move(group), std::move(reference), found.delay_s, sigma, found.correlation, false, ""};
+  const double least = std::max(options.min_delay_s, 3.0 * sigma);
   if (found.correlation < 0.0) {
     report.text = "opposite sign: is the channel's sign right?";
   } else if (!found.determined) {
     report.text = fmt::format("not determined: {}", found.reason);
-  } else if (std::abs(found.delay_s) < std::max(options.min_delay_s, 3.0 * found.sigma_s)) {
-    report.text = "too small to matter";
+  } else if (std::abs(found.delay_s) < least) {
+    report.text = text_of_small(report, least, options);
   } else {
     report.applied = true;
     report.text = "applied";

@@ -324,11 +324,7 @@ DelayReport common_effect_delay(std::string cause_name, std::string effect_name,
   if (report.delay_s < -least) {
     report.text = fmt::format("negative: a {} cannot follow its effect, left alone", kind);
   } else if (report.delay_s < least) {
-    // Of so wide a range it is not known whether it matters.
-    constexpr double kMatters_s = 0.03;
-    report.text = least > kMatters_s && least > options.min_delay_s
-                      ? fmt::format("not determined: {:.3f} +- {:.3f} s", report.delay_s, report.sigma_s)
-                      : "too small to matter";
+    report.text = text_of_small(report, least, options);
   } else if (gain(explained) < kBetterThanNone * jackknife_sigma(shares, gain)) {
     report.text = "not determined: no delay fits as well";
   } else {

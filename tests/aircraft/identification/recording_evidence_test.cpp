@@ -135,10 +135,27 @@ TEST(RecordingEvidence, SaysWhereAVanesDelayCannotBeSeen) {
               ::testing::HasSubstr("how late the alpha vane is cannot be seen (0.149 +- 0.145"));
   EXPECT_THAT(row("beta", 0.0, 0.02, false), HasSubstr("beta vane"));
   EXPECT_EQ(row("alpha", 0.005, 0.005, false), "");
-  EXPECT_EQ(row("alpha", 0.2, 0.03, true), "") << "taken off";
+  EXPECT_EQ(row("alpha", 0.2, 0.005, true, "applied"), "") << "taken off";
+  EXPECT_THAT(row("alpha", 0.2, 0.03, true, "applied"),
+              HasSubstr("not well known (0.200 +- 0.030 s): it is taken as found"));
   EXPECT_THAT(row("alpha", 0.0, 0.0, false, "not determined: the force explains too little"),
               ::testing::HasSubstr("cannot be seen: it is taken as recorded"));
   EXPECT_EQ(row("gps", 0.1, 0.1, false), "");
+}
+
+TEST(RecordingEvidence, NamesAVaneWhoseDelaysContradictEachOther) {
+  Segments segments;
+  segments.airborne = {{5.0, 115.0}};
+  DelayReport vane{"beta", "gyro, accelerometer and attitude", 0.06, 0.003, 0.99, true, "applied"};
+  vane.contradicted_by = {"side force (accel_y)", 0.02, 0.005};
+  const auto rows = recording_evidence(flown().measured, clean_reconstruction(), reference_options(), segments,
+                                       std::vector<DelayReport>{vane});
+  const auto row = std::ranges::find(rows, "delay of a vane", [](const FlightEvidence& r) { return r.row.name; });
+  ASSERT_NE(row, rows.end()) << texts(rows);
+  EXPECT_EQ(row->row.outcome, Outcome::kCare);
+  EXPECT_THAT(row->row.text,
+              HasSubstr("0.060 +- 0.003 s late by gyro, accelerometer and attitude, but 0.020 +- 0.005 s "
+                        "by side force"));
 }
 
 TEST(RecordingEvidence, SaysWhichSurfacesHaveNoDelayOfTheirOwn) {

@@ -112,7 +112,7 @@ Evidence against_start(const CoefficientChecks& checks) {
           .value = checks.error_over_start,
           .limit = kCare,
           .scale = "error over that of the start",
-          .text = fmt::format("on the hold-out its error is {:.2f} times that of the values that the study gives{}",
+          .text = fmt::format("on the hold-out its error is {:.3g} times that of the values that the study gives{}",
                               checks.error_over_start, passed ? "" : ": these predict better"),
           .bears_on = Purpose::kPrediction,
           .advice = passed ? std::string() : std::string("keep the values of the study for simulation")};

@@ -52,16 +52,36 @@ std::vector<FlightEvidence> delay_rows(std::span<const DelayReport> delays) {
   return rows;
 }
 
-/// Vanes whose delay a recording does not show: in calm air lift follows alpha, pitch rate and elevator alike, so that
-/// a late vane and other derivatives explain the same.
+/// A vane whose delay by its force and by the motion contradict each other: one of what they are computed from is
+/// wrong.
+FlightEvidence contradicted_vane_row(const DelayReport& report) {
+  const recording::OtherDelay& other = *report.contradicted_by;
+  return {
+      {.name = "delay of a vane",
+       .about = report.group,
+       .outcome = Outcome::kCare,
+       .value = other.delay_s - report.delay_s,
+       .limit = estimation::kBeyondChance * std::hypot(report.sigma_s, other.sigma_s),
+       .scale = "s",
+       .text =
+           fmt::format("the {} vane is {:.3f} +- {:.3f} s late by {}, but {:.3f} +- {:.3f} s by {}", report.group,
+                       report.delay_s, report.sigma_s, report.reference, other.delay_s, other.sigma_s, other.reference),
+       .bears_on = Purpose::kParameters,
+       .advice = fmt::format("check airspeed, accelerometer and the vane's position (reconstruct.vane_position), or "
+                             "measure the delay and give it: delays.{} = \"... ms\"",
+                             report.group)},
+      report.group == "alpha" ? by_alpha() : by_beta()};
+}
+
+/// Vanes whose delay a recording does not show: in gusts of the size of its manoeuvres, or with few of these, the
+/// motion does not tell, and where lift follows alpha, pitch rate and elevator alike, the force does not.
 std::vector<FlightEvidence> vane_delay_rows(std::span<const DelayReport> delays) {
-  constexpr double kMatters_s = 0.03;
   std::vector<FlightEvidence> rows;
   for (const DelayReport& report : delays) {
     const bool alpha = report.group == "alpha";
-    if ((!alpha && report.group != "beta") || report.applied) continue;
-    const bool unseen = report.text.starts_with("not determined");
-    if (!unseen && !(estimation::kBeyondChance * report.sigma_s > kMatters_s)) continue;
+    if (!alpha && report.group != "beta") continue;
+    if (report.contradicted_by) rows.push_back(contradicted_vane_row(report));
+    if (report.determined() && !(estimation::kBeyondChance * report.sigma_s > recording::kDelayMatters_s)) continue;
     const std::string found =
         report.sigma_s > 0.0 ? fmt::format(" ({:.3f} +- {:.3f} s)", report.delay_s, report.sigma_s) : std::string();
     rows.push_back(
@@ -69,12 +89,12 @@ std::vector<FlightEvidence> vane_delay_rows(std::span<const DelayReport> delays)
           .about = report.group,
           .outcome = Outcome::kNotVerified,
           .value = report.sigma_s,
-          .limit = kMatters_s / estimation::kBeyondChance,
+          .limit = recording::kDelayMatters_s / estimation::kBeyondChance,
           .scale = "s",
-          .text = fmt::format(
-              "how late the {} vane is cannot be seen{}: it is taken as recorded, and what depends on {} is "
-              "off by several percent where it is late by a few hundredths of a second",
-              report.group, found, report.group),
+          .text = fmt::format("how late the {} vane {}{}: it is taken as {}, and what depends on {} is off by several "
+                              "percent where that is wrong by a few hundredths of a second",
+                              report.group, report.applied ? "is, is not well known" : "is cannot be seen", found,
+                              report.applied ? "found" : "recorded", report.group),
           .bears_on = Purpose::kParameters,
           .advice = fmt::format("measure the delay of the vane and its filter, and give it: delays.{} = \"... ms\"",
                                 report.group)},

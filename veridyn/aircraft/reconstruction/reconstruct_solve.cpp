@@ -127,11 +127,16 @@ Solution solve_with_air_data_errors(const FilterEngine& engine, const SolveTask&
   const Eigen::MatrixXd correlation =
       sigma.cwiseInverse().asDiagonal() * errors.covariance * sigma.cwiseInverse().asDiagonal();
   std::vector<ResultColumns> smoothed_shifts, filtered_shifts;
+  // Innovations are those of the first pass.
+  ReconstructOptions of_shifts = *task.options;
+  of_shifts.keep_innovations = false;
+  SolveTask shift = task;
+  shift.options = &of_shifts;
   for (std::size_t k = 0; k < errors.applied.size(); ++k) {
     const Eigen::Index i = errors.applied[k];
     setting.air_error = errors.correction();
     setting.air_error(errors.index[i]) += sigma(i);
-    Solution shifted = run_pass(engine, task, setting, columns,
+    Solution shifted = run_pass(engine, shift, setting, columns,
                                 {&progress, static_cast<double>(k + 1) / parts, static_cast<double>(k + 2) / parts});
     smoothed_shifts.push_back(std::move(*shifted.smoothed));
     if (shifted.filtered) filtered_shifts.push_back(std::move(*shifted.filtered));

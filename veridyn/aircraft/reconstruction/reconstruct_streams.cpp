@@ -197,6 +197,15 @@ double FlightStreams::density_at(double time) const {
   return density_at(time, cursor);
 }
 
+DelayAlignment alignment_of(const Recording& recording, DelayAlignment alignment, const ReconstructOptions& options) {
+  FlightStreams air;
+  load_density(recording, air);
+  alignment.air_density = numerics::median(air.density);
+  alignment.airspeed_is_true = options.airspeed_is_true;
+  alignment.vane_position = options.vane_position;
+  return alignment;
+}
+
 FlightStreams load_streams(const Recording& recording, const ReconstructOptions& o) {
   FlightStreams s;
   s.gyro = vector(recording, "gyro");

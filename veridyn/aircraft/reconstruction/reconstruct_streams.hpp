@@ -9,6 +9,7 @@
 #include "veridyn/aircraft/model/flight_dynamics.hpp"
 #include "veridyn/aircraft/model/subject.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct_options.hpp"
+#include "veridyn/aircraft/sensors/delays.hpp"
 #include "veridyn/core/enum_array.hpp"
 #include "veridyn/core/recording.hpp"
 
@@ -78,6 +79,11 @@ struct FlightStreams {
 /// Channels that the recording lacks have empty streams.
 /// @throws InputError where the gyro is missing
 [[nodiscard]] FlightStreams load_streams(const Recording& recording, const ReconstructOptions& options);
+
+/// The alignment with what the motion past the vanes of this recording is computed with: the median air density, where
+/// the vanes are and what kind of airspeed it holds.
+[[nodiscard]] DelayAlignment alignment_of(const Recording& recording, DelayAlignment alignment,
+                                          const ReconstructOptions& options);
 
 /// Streams with a force model to filter with.
 struct ModelStreams {

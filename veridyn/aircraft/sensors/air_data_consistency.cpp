@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "veridyn/aircraft/model/still_air_rate.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/estimation/regression/instrumental_variables.hpp"
@@ -250,14 +251,18 @@ InertialAngles inertial_angles(const Recording& recording, const Channel& air_de
   out.alpha.assign(out.grid.count, 0.0);
   out.beta.assign(out.grid.count, 0.0);
   for (std::size_t k = 1; k < out.grid.count; ++k) {
-    const double ca = std::cos(a[k]), sa = std::sin(a[k]), ct = std::cos(pitch[k]), st = std::sin(pitch[k]);
-    const double normal = az[k] * ca - ax[k] * sa + kGravity * (ct * std::cos(roll[k]) * ca + st * sa);
-    const double side = ay[k] + kGravity * ct * std::sin(roll[k]);
+    const WindAxesRate<double> rate_now = still_air_rate({.specific_force = {ax[k], ay[k], az[k]},
+                                                          .rates = {p[k], q[k], r[k]},
+                                                          .phi = roll[k],
+                                                          .theta = pitch[k],
+                                                          .Va = V[k],
+                                                          .alpha = a[k],
+                                                          .beta = b[k]});
     const double h = out.grid.step;
     // After a hole the integrals restart from zero: holes are longer than kChange_s, so no change spans one.
     const auto from = [](double last) { return std::isfinite(last) ? last : 0.0; };
-    out.alpha[k] = from(out.alpha[k - 1]) + h * (q[k] - p[k] * std::tan(b[k]) + normal / V[k]);
-    out.beta[k] = from(out.beta[k - 1]) + h * (p[k] * sa - r[k] * ca + side / V[k]);
+    out.alpha[k] = from(out.alpha[k - 1]) + h * rate_now.alpha;
+    out.beta[k] = from(out.beta[k - 1]) + h * rate_now.beta;
   }
   return out;
 }

@@ -11,6 +11,8 @@
 #include <utility>
 
 #include "veridyn/aircraft/model/atmosphere.hpp"
+#include "veridyn/aircraft/model/still_air_rate.hpp"
+#include "veridyn/aircraft/sensors/vane_kinematics.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/parallel.hpp"
 #include "veridyn/numerics/rotation.hpp"
@@ -52,6 +54,21 @@ const SurfaceAxis* surface_axis(std::string_view name) {
   return found == kSurfaceAxes.end() ? nullptr : &*found;
 }
 
+/// Of two comparisons the one that determines the delay; of two that do the one with the smaller error, with what the
+/// other says where they contradict each other.
+std::optional<DelayReport> better_of(std::optional<DelayReport> a, std::optional<DelayReport> b) {
+  if (!a || !b) return a ? std::move(a) : std::move(b);
+  const bool both = a->determined() && b->determined();
+  const bool first = a->determined() != b->determined() ? a->determined() : a->sigma_s > 0.0 && a->sigma_s < b->sigma_s;
+  std::optional<DelayReport>&chosen = first ? a : b, &other = first ? b : a;
+  if (both && std::abs(a->delay_s - b->delay_s) > 3.0 * std::hypot(a->sigma_s, b->sigma_s)) {
+    chosen->contradicted_by = {other->reference, other->delay_s, other->sigma_s};
+    chosen->text +=
+        fmt::format("; by {} it would be {:.3f} +- {:.3f} s", other->reference, other->delay_s, other->sigma_s);
+  }
+  return std::move(chosen);
+}
+
 /// View of a recording that is being aligned, group by group, and of how.
 class Alignment {
  public:
@@ -71,7 +88,7 @@ class Alignment {
       plan(smoothed_, name, [this](const Channel& channel) { return band_.smooth(channel); });
     for (const char* name : {"roll", "pitch", "yaw"})
       plan(smoothed_angles_, name, [this](const Channel& channel) { return band_.smooth_angle(channel); });
-    for (const char* name : {"gyro_x", "gyro_y", "gyro_z", "accel_y", "accel_z"})
+    for (const char* name : {"gyro_x", "gyro_y", "gyro_z", "accel_y", "accel_z", "alpha", "beta"})
       plan(noise_, name, [this](const Channel& channel) { return band_.noise_variance(channel); });
     numerics::parallel_for(jobs.size(), threads, [&](std::size_t i) { jobs[i](); });
   }
@@ -125,15 +142,17 @@ class Alignment {
     }
   }
 
-  /// [m/s]; of the dynamic pressure in air of sea level where there is no airspeed, constant without either, NaN where
-  /// the aircraft does not fly.
+  /// [m/s]; of the dynamic pressure where there is no airspeed, constant without either, NaN where the aircraft does
+  /// not fly.
   Series airspeed() const {
     Series Va(band_.size(), kSlowest_mps + 1.0);
     if (recording_.has("airspeed")) {
       Va = smooth("airspeed");
+      if (!options_.airspeed_is_true)
+        for (double& v : Va) v *= std::sqrt(kSeaLevelDensity / options_.air_density);
     } else if (recording_.has("dynamic_pressure")) {
       Va = smooth("dynamic_pressure");
-      for (double& v : Va) v = std::sqrt(2.0 * std::max(v, 0.0) / kSeaLevelDensity);
+      for (double& v : Va) v = std::sqrt(2.0 * std::max(v, 0.0) / options_.air_density);
     }
     for (double& v : Va)
       if (!(v > kSlowest_mps)) v = kNaN;
@@ -195,26 +214,28 @@ class Alignment {
   Series implied_airspeed_derivative() const {
     const Series &phi = smooth_angle("roll"), &theta = smooth_angle("pitch");
     const Series &ax = smooth("accel_x"), &ay = smooth("accel_y"), &az = smooth("accel_z");
-    const Series alpha = has({"alpha"}) ? smooth("alpha") : Series(band_.size(), 0.0);
-    const Series beta = has({"beta"}) ? smooth("beta") : Series(band_.size(), 0.0);
+    const Series alpha = flow_angle("alpha"), beta = flow_angle("beta");
     Series derivative(band_.size());
-    for (std::size_t k = 0; k < band_.size(); ++k) {
-      const double ca = std::cos(alpha[k]), sa = std::sin(alpha[k]), cb = std::cos(beta[k]), sb = std::sin(beta[k]);
-      // Acceleration relative to still air in body axes, rotated into wind axes.
-      const double x = ax[k] - kGravity * std::sin(theta[k]);
-      const double y = ay[k] + kGravity * std::cos(theta[k]) * std::sin(phi[k]);
-      const double z = az[k] + kGravity * std::cos(theta[k]) * std::cos(phi[k]);
-      derivative[k] = x * ca * cb + y * sb + z * sa * cb;
-    }
+    for (std::size_t k = 0; k < band_.size(); ++k)
+      derivative[k] = still_air_rate({.specific_force = {ax[k], ay[k], az[k]},
+                                      .phi = phi[k],
+                                      .theta = theta[k],
+                                      .Va = kSlowest_mps,
+                                      .alpha = alpha[k],
+                                      .beta = beta[k]})
+                          .Va;
     return derivative;
   }
+
+  /// As recorded, zero without the vane.
+  Series flow_angle(const char* name) const { return recording_.has(name) ? smooth(name) : Series(band_.size(), 0.0); }
 
   /// The same as recorded, be it as dynamic pressure.
   Series airspeed_derivative() const {
     if (recording_.has("airspeed")) return band_.derivative(at("airspeed"));
     Series derivative = band_.derivative(at("dynamic_pressure"));
     const Series Va = airspeed();
-    for (std::size_t k = 0; k < derivative.size(); ++k) derivative[k] /= kSeaLevelDensity * Va[k];
+    for (std::size_t k = 0; k < derivative.size(); ++k) derivative[k] /= options_.air_density * Va[k];
     return derivative;
   }
 
@@ -266,7 +287,7 @@ class Alignment {
 
   /// The delay of a vane at which the lift, or the side force, explains it best: air that moves shows in the vane and
   /// in the force at once, while the motion of the aircraft follows a gust by its response.
-  std::optional<DelayReport> vane(const DelayGroup& group) {
+  std::optional<DelayReport> vane_by_force(const DelayGroup& group) const {
     const bool lift = group.name == "alpha";
     const char* const force = lift ? "accel_z" : "accel_y";
     if (!recording_.has(group.name) || !recording_.has(force)) return std::nullopt;
@@ -280,13 +301,51 @@ class Alignment {
       for (const char* surface : {"aileron", "rudder"}) equation.add_position(surface);
     }
     // The vane is late against all of them.
-    DelayReport report = recording::common_effect_delay(group.name, lift ? "lift (accel_z)" : "side force (accel_y)",
-                                                        {{.effect = smooth(group.name),
-                                                          .causes = {equation.measured(force, 2)},
-                                                          .others = {},
-                                                          .late_others = equation.others()}},
-                                                        band_.step(), options_, progress_, "force");
-    if (report.applied) take_off(group.channels, report.delay_s);
+    return recording::common_effect_delay(group.name, lift ? "lift (accel_z)" : "side force (accel_y)",
+                                          {{.effect = smooth(group.name),
+                                            .causes = {equation.measured(force, 2)},
+                                            .others = {},
+                                            .late_others = equation.others()}},
+                                          band_.step(), options_, progress_, "force");
+  }
+
+  /// What a vane shows in still air follows from the motion, whatever the aerodynamics. Gusts are left out: the
+  /// aircraft answers them, and the answer is late.
+  std::optional<DelayReport> vane_by_motion(const DelayGroup& group) const {
+    /// An airspeed without calibration; with a wrong one angle and path answer a manoeuvre at another time.
+    constexpr double kAirspeedDoubt = 0.03;
+    const bool speed = recording_.has("airspeed") || recording_.has("dynamic_pressure");
+    if (!speed || !has({"roll", "pitch", "accel_x", "accel_y", "accel_z"}) || !recording_.has(group.name))
+      return std::nullopt;
+    const VaneKinematics motion{.rate_Hz = band_.rate_Hz(),
+                                .p = smooth("gyro_x"),
+                                .q = smooth("gyro_y"),
+                                .r = smooth("gyro_z"),
+                                .ax = smooth("accel_x"),
+                                .ay = smooth("accel_y"),
+                                .az = smooth("accel_z"),
+                                .phi = smooth_angle("roll"),
+                                .theta = smooth_angle("pitch"),
+                                .Va = airspeed(),
+                                .alpha = flow_angle("alpha"),
+                                .beta = flow_angle("beta"),
+                                .position = options_.vane_position};
+    const auto angle = [&](double airspeed_factor) {
+      StillAirAngles angles = still_air_angles(motion, airspeed_factor);
+      return without_drift(group.name == "alpha" ? angles.alpha : angles.beta, motion.rate_Hz);
+    };
+    return recording::shared_delay(group.name, "gyro, accelerometer and attitude",
+                                   {{.expected = angle(1.0),
+                                     .observed = without_drift(smooth(group.name), motion.rate_Hz),
+                                     .noise_variance = band_.noise_variance(at(group.name)),
+                                     .doubted = angle(1.0 + kAirspeedDoubt)}},
+                                   band_.rate_Hz(), options_);
+  }
+
+  /// By what has the smaller error: the force, where air moves, or the motion, where it does not.
+  std::optional<DelayReport> vane(const DelayGroup& group) {
+    std::optional<DelayReport> report = better_of(vane_by_force(group), vane_by_motion(group));
+    if (report && report->applied) take_off(group.channels, report->delay_s);
     return report;
   }
 
