@@ -113,9 +113,8 @@ TEST(PathFunctions, HaveTheAutomaticDerivativesOfTheirFormulasAndCentralDifferen
 TEST(PathFunctions, StayAsTheyAreAmongFittedAndExactPaths) {
   PathFitOptions options;
   options.mixed = true;
-  options.tolerance = 1e-12;
+  options.tolerance = 1e-14;
   options.max_degree = 2;
-  options.panels = 4;
   const Fit strict(arm_with_functions(), options);
   EXPECT_TRUE(strict.fitted.errors()[kTwo].given && strict.fitted.errors()[kTwo].fitted);
   EXPECT_EQ(strict.fitted.errors()[kTwo].length, 0.0);
