@@ -279,6 +279,14 @@ TEST(OsimReader, WhatScriptsAddAmongTheComponentsCountsAsInItsSet) {
   EXPECT_FALSE(with_others.unsupported[1].changes_motion);
 }
 
+TEST(OsimReader, ModelsOfEndlessBodiesAreRefusedBeforeTheyAreRead) {
+  std::string bodies;
+  for (int i = 0; i < 10000; ++i) bodies += fmt::format("<Body name=\"b{}\"/>", i);
+  EXPECT_EQ(reading_error("<OpenSimDocument Version=\"40000\"><Model name=\"m\"><BodySet><objects>" + bodies +
+                          "</objects></BodySet></Model></OpenSimDocument>"),
+            "arm.osim: has 10000 bodies; at most 2000 are read");
+}
+
 TEST(OsimReader, BadModelsGetOneLineThatNamesFileLineAndElement) {
   const std::string arm = arm_text();
   EXPECT_THAT(reading_error(arm.substr(0, arm.size() / 2)),

@@ -104,6 +104,16 @@ void read_gravity_and_units(Context& context, const Element& root) {
   check("force_units", "newtons", {"newtons", "newton", "Newtons", "N"});
 }
 
+/// Far above the largest models of people (some 150 bodies): what has more was made by mistake or to do harm.
+void refuse_endless(const Document& document) {
+  constexpr std::size_t kMostBodies = 2000;
+  const std::size_t bodies = Element(document, document.model()).objects("BodySet").size() +
+                             static_cast<std::size_t>(std::distance(document.model().child("components").begin(),
+                                                                    document.model().child("components").end()));
+  if (bodies > kMostBodies)
+    throw InputError(document.name(), fmt::format("has {} bodies; at most {} are read", bodies, kMostBodies));
+}
+
 /// By their order in PartOf.
 constexpr std::array<const char*, 6> kSets{"BodySet",  "JointSet",           "ConstraintSet",
                                            "ForceSet", "ContactGeometrySet", "MarkerSet"};
@@ -222,6 +232,7 @@ void read_markers(Context& context) {
 OsimFile OsimFile::parse(std::string text, std::string name) {
   OsimFile file;
   auto document = std::make_shared<osim::Document>(std::move(text), std::move(name));
+  osim::refuse_endless(*document);
   osim::Context context{*document, {}, {}, {}, osim::components_of(*document)};
   const osim::Element root(*document, document->model());
   context.model.name = root.name();

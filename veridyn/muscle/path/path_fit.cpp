@@ -360,11 +360,13 @@ std::array<double, 4> FittedPaths::Builder::cubic(const AtPose& first, const AtP
           (first.slope + last.slope - 2.0 * mean) / (h * h)};
 }
 
-/// Cubics through lengths and slopes at their ends, each halved until it meets half the tolerance a quarter from both
-/// ends and in the middle. What is still off when a piece is narrower than a millionth of the range jumps: such a
-/// piece goes on straight from its first end, so that arms are those of both sides and none is that of the jump.
+/// Cubics through lengths and slopes at their ends, each halved until it meets a part of the tolerance a quarter from
+/// both ends and in the middle: a small one, since the slopes' own slopes, which estimation needs, jump from cubic to
+/// cubic. What is still off when a piece is narrower than a millionth of the range jumps: such a piece goes on straight
+/// from its first end, so that arms are those of both sides and none is that of the jump.
 void FittedPaths::Builder::store_pieces(Part& part, int coordinate, double at_rest) {
   constexpr int kFirstPieces = 32;
+  constexpr double kPart = 0.02;
   constexpr std::size_t kMostPieces = 4096;
   const Axis scaled = result_.axes_[part.axes[0]];
   const double low = scaled.middle - 1.0 / scaled.scale, range = 2.0 / scaled.scale;
@@ -376,7 +378,7 @@ void FittedPaths::Builder::store_pieces(Part& part, int coordinate, double at_re
     const auto off = [&](const AtPose& exact) {
       const double s = exact.at - first.at;
       const double length = ((c[3] * s + c[2]) * s + c[1]) * s + c[0], slope = (3.0 * c[3] * s + 2.0 * c[2]) * s + c[1];
-      return std::max(std::abs(length - exact.length), std::abs(slope - exact.slope)) > 0.5 * options_.tolerance;
+      return std::max(std::abs(length - exact.length), std::abs(slope - exact.slope)) > kPart * options_.tolerance;
     };
     const AtPose before = along(part, coordinate, first.at + 0.25 * h, at_rest),
                  after = along(part, coordinate, first.at + 0.75 * h, at_rest);
