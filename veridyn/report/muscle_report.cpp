@@ -79,16 +79,24 @@ std::string list_text(const std::vector<std::string>& names) {
 
 std::string paths_text(const MusculoskeletalSystem& system) {
   switch (system.path_source()) {
-    case PathSource::kExact:
+    case PathSource::kExact: {
+      const std::vector<Muscle>& muscles = system.model().muscles;
+      if (!muscles.empty() && std::all_of(muscles.begin(), muscles.end(), [](const Muscle& m) { return !!m.function; }))
+        return "functions of coordinates, as the model gives them";
       return "wrapped at every pose, taut and continuous";
+    }
     case PathSource::kFitted: {
       double length = 0.0, arm = 0.0;
+      bool any = false;
       for (const PathFitError& error : system.fit()->errors()) {
+        if (!error.fitted) continue;
+        any = true;
         length = std::max(length, error.length);
         arm = std::max(arm, error.moment_arm);
       }
-      return fmt::format("polynomials fitted to the wrapped paths: lengths within {:.2g} mm, moment arms {:.2g} mm",
-                         1e3 * length, 1e3 * arm);
+      if (!any) return "wrapped at every pose: no fit is good enough";
+      return fmt::format("fitted to the wrapped paths: lengths within {:.2g} mm, moment arms {:.2g} mm", 1e3 * length,
+                         1e3 * arm);
     }
     case PathSource::kAsOpenSim:
       break;

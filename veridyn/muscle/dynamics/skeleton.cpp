@@ -17,7 +17,9 @@ std::vector<Polyline> bones(const Model& model, const Mechanism& mechanism, cons
       // What is welded on, such as a load, makes no stick.
       if (j.coordinates.empty() && child.mass_center.isZero(0.0)) continue;
       carries = true;
-      lines.push_back({model.bodies[b].name, {joint, pose * j.parent_frame.translation}});
+      // Where the child is, which a joint that translates, such as a knee, moves away from its frame in the parent.
+      const Eigen::Vector3d carried = body_pose(mechanism, kinematics, j.child) * j.child_frame.translation;
+      lines.push_back({model.bodies[b].name, {joint, carried}});
     }
     if (!carries && model.bodies[b].mass > 0.0) {
       const Eigen::Vector3d center = pose * model.bodies[b].mass_center;
