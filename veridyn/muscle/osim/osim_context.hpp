@@ -30,6 +30,7 @@ enum class PartOf {
   kUnknown
 };
 
+/// By the name of the object's type.
 [[nodiscard]] PartOf part_of(std::string_view type);
 
 /// What scripts added to the model or to its parts: `<components>` and ComponentSet.
