@@ -52,6 +52,24 @@ CubicPieces cubic_pieces(std::span<const double> x, std::span<const double> y, c
   return p;
 }
 
+/// Of pieces that begin at `breaks`, one before them and one from `end` on.
+std::vector<double> origins(std::span<const double> breaks, double end) {
+  std::vector<double> all{breaks.front()};
+  all.insert(all.end(), breaks.begin(), breaks.end());
+  all.push_back(end);
+  return all;
+}
+
+/// The coefficients of the same.
+template <std::size_t N>
+std::vector<double> between(const std::array<double, N>& before, std::span<const std::array<double, N>> pieces,
+                            const std::array<double, N>& after) {
+  std::vector<double> all(before.begin(), before.end());
+  for (const std::array<double, N>& c : pieces) all.insert(all.end(), c.begin(), c.end());
+  all.insert(all.end(), after.begin(), after.end());
+  return all;
+}
+
 }  // namespace
 
 PiecewisePolynomial PiecewisePolynomial::constant(double value) {
@@ -148,21 +166,14 @@ PiecewisePolynomial PiecewisePolynomial::natural_spline(std::span<const double> 
 PiecewisePolynomial PiecewisePolynomial::held_pieces(std::span<const double> breaks,
                                                      std::span<const std::array<double, 6>> coefficients, double end) {
   VERIDYN_ASSERT(!breaks.empty() && breaks.size() == coefficients.size() && end >= breaks.back());
-  PiecewisePolynomial f;
-  f.degree_ = 5;
-  f.origin_.clear();
-  f.coefficient_.clear();
-  const auto add = [&f](double origin, const std::array<double, 6>& c) {
-    f.origin_.push_back(origin);
-    f.coefficient_.insert(f.coefficient_.end(), c.begin(), c.end());
-  };
-  add(breaks.front(), {coefficients.front()[0]});
-  for (std::size_t i = 0; i < breaks.size(); ++i) add(breaks[i], coefficients[i]);
   const std::array<double, 6>& last = coefficients.back();
   const double s = end - breaks.back();
   double value = last[5];
   for (std::size_t i = 5; i-- > 0;) value = value * s + last[i];
-  add(end, {value});
+  PiecewisePolynomial f;
+  f.degree_ = 5;
+  f.origin_ = origins(breaks, end);
+  f.coefficient_ = between<6>({coefficients.front()[0]}, coefficients, {value});
   f.breaks_.assign(breaks.begin(), breaks.end());
   // The end itself belongs to the last piece.
   f.breaks_.push_back(std::nextafter(end, kInfinity));
@@ -173,19 +184,13 @@ PiecewisePolynomial PiecewisePolynomial::continued_pieces(std::span<const double
                                                           std::span<const std::array<double, 4>> coefficients,
                                                           double end) {
   VERIDYN_ASSERT(!breaks.empty() && breaks.size() == coefficients.size() && end > breaks.back());
-  PiecewisePolynomial f;
-  f.degree_ = 3;
-  f.origin_.clear();
-  f.coefficient_.clear();
-  const auto add = [&f](double origin, const std::array<double, 4>& c) {
-    f.origin_.push_back(origin);
-    f.coefficient_.insert(f.coefficient_.end(), c.begin(), c.end());
-  };
-  add(breaks.front(), {coefficients.front()[0], coefficients.front()[1]});
-  for (std::size_t i = 0; i < breaks.size(); ++i) add(breaks[i], coefficients[i]);
   const std::array<double, 4>& c = coefficients.back();
   const double s = end - breaks.back();
-  add(end, {((c[3] * s + c[2]) * s + c[1]) * s + c[0], (3.0 * c[3] * s + 2.0 * c[2]) * s + c[1]});
+  PiecewisePolynomial f;
+  f.degree_ = 3;
+  f.origin_ = origins(breaks, end);
+  f.coefficient_ = between<4>({coefficients.front()[0], coefficients.front()[1]}, coefficients,
+                              {((c[3] * s + c[2]) * s + c[1]) * s + c[0], (3.0 * c[3] * s + 2.0 * c[2]) * s + c[1]});
   f.breaks_.assign(breaks.begin(), breaks.end());
   f.breaks_.push_back(end);
   return f;

@@ -67,6 +67,14 @@ struct Context {
 /// A frame in another one by two properties: a translation [m] and angles of a body-fixed x-y-z sequence [rad].
 [[nodiscard]] Placement read_placement(const Element& element, const char* translation, const char* orientation);
 
+/// Of bodies or coordinates, for suggestions.
+template <typename List>
+[[nodiscard]] std::vector<std::string> names_of(const List& list) {
+  std::vector<std::string> names;
+  for (const auto& item : list) names.push_back(item.name);
+  return names;
+}
+
 /// What a socket is connected to: `socket_NAME`, `socket_NAME_connectee_name` or a Connector element.
 [[nodiscard]] std::string socket(const Element& user, const char* name);
 

@@ -7,12 +7,6 @@
 namespace veridyn::muscle::osim {
 namespace {
 
-std::vector<std::string> names_of_bodies(const Model& model) {
-  std::vector<std::string> names;
-  for (const Body& body : model.bodies) names.push_back(body.name);
-  return names;
-}
-
 /// The folder of a component path: "bodyset" of "/bodyset/femur".
 std::string folder_of(std::string_view path) {
   const std::string name = last_part(path);
@@ -125,7 +119,7 @@ FrameReference Context::frame(const Element& user, const char* property, std::st
     if (is_body && (found == nullptr || folder == "bodyset")) return {model.body(name), placement};
     if (found == nullptr) {
       user.fail(property, fmt::format("there is no body or frame '{}'{}", reference,
-                                      suggestion(name, names_of_bodies(model), 8)));
+                                      suggestion(name, names_of(model.bodies), 8)));
     }
     if (found->type() == "StationDefinedFrame") {
       const FrameReference at = station_frame(*this, *found, hops);

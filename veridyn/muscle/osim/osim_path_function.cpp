@@ -116,13 +116,6 @@ void compare_speed(Context& context, const Element& element, const PathFunction&
                                       worst, text_of(context.model, path, *at_pose)));
 }
 
-std::vector<Element> functions_of(const Element& element, const char* property) {
-  std::vector<Element> found;
-  for (const pugi::xml_node node : element.property(property).children())
-    if (node.type() == pugi::node_element) found.emplace_back(element.document(), node);
-  return found;
-}
-
 }  // namespace
 
 std::optional<PathFunction> read_path_function(Context& context, const Element& owner) {
@@ -142,7 +135,7 @@ std::optional<PathFunction> read_path_function(Context& context, const Element& 
   if (!length) owner.fail("length_function", "missing");
   path.length = read_any(length, path.coordinates.size());
   const std::vector<PathPose> poses = random_poses(context.model, path);
-  const std::vector<Element> arms = functions_of(element, "moment_arm_functions");
+  const std::vector<Element> arms = element.objects("moment_arm_functions");
   if (!arms.empty()) compare_arms(context, owner, path, poses, arms);
   if (const Element speed = find_function(element, "lengthening_speed_function"))
     compare_speed(context, owner, path, poses, speed);

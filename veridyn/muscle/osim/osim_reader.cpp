@@ -19,13 +19,6 @@ namespace veridyn::muscle {
 namespace osim {
 namespace {
 
-template <typename List>
-std::vector<std::string> names_of(const List& list) {
-  std::vector<std::string> names;
-  for (const auto& item : list) names.push_back(item.name);
-  return names;
-}
-
 /// About the mass centre. What no mass can have is repaired: negative principal moments become zero.
 Eigen::Matrix3d read_inertia(Context& context, const Element& body) {
   std::vector<double> v = body.numbers("inertia");
@@ -107,9 +100,9 @@ void read_gravity_and_units(Context& context, const Element& root) {
 /// Far above the largest models of people (some 150 bodies): what has more was made by mistake or to do harm.
 void refuse_endless(const Document& document) {
   constexpr std::size_t kMostBodies = 2000;
-  const std::size_t bodies = Element(document, document.model()).objects("BodySet").size() +
-                             static_cast<std::size_t>(std::distance(document.model().child("components").begin(),
-                                                                    document.model().child("components").end()));
+  std::size_t bodies = Element(document, document.model()).objects("BodySet").size();
+  for (const pugi::xml_node component : document.model().child("components").children())
+    if (part_of(component.name()) == PartOf::kBodySet) ++bodies;
   if (bodies > kMostBodies)
     throw InputError(document.name(), fmt::format("has {} bodies; at most {} are read", bodies, kMostBodies));
 }
