@@ -123,7 +123,7 @@ RegressionData data_of(const io::NumberTable& table, const Arguments& arguments)
   return data;
 }
 
-JudgedRegressionOptions options_of(const Arguments& arguments) {
+JudgedRegressionOptions regression_options(const Arguments& arguments) {
   static const std::map<std::string, Method> kMethods{
       {"OLS", Method::kOls}, {"TLS", Method::kTls}, {"GTLS", Method::kGtls}, {"PCA-GTLS", Method::kPcaGtls}};
   JudgedRegressionOptions options;
@@ -169,7 +169,7 @@ int regress(const Arguments& arguments) {
   RegressionData data = data_of(table, arguments);
   OutputFolder folder(options.out);
   TerminalProgress progress = progress_of(options);
-  const JudgedRegression result = judged_regression(std::move(data), options_of(arguments), progress);
+  const JudgedRegression result = judged_regression(std::move(data), regression_options(arguments), progress);
   if (result.interrupted) throw Interrupted();
   folder.write("estimate.json", io::to_json(result.estimate));
   folder.write("parameters.csv", parameters_csv(result.estimate));

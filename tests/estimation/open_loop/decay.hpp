@@ -8,6 +8,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/open_loop/open_loop_model.hpp"
+#include "veridyn/estimation/output_error/autodiff_model.hpp"
 
 namespace veridyn::estimation {
 

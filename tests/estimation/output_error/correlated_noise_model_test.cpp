@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/estimation/output_error/example_models.hpp"
+#include "veridyn/estimation/output_error/autodiff_model.hpp"
 #include "veridyn/numerics/linear_algebra/cholesky.hpp"
 #include "veridyn/numerics/random.hpp"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "tests/estimation/simulated_regression.hpp"
-#include "veridyn/estimation/output_error/parametric_model.hpp"
+#include "veridyn/estimation/output_error/autodiff_model.hpp"
 
 /// Models with closed forms, for tests of output error.
 namespace veridyn::estimation::testing_support {

@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "veridyn/estimation/output_error/autodiff_model.hpp"
 #include "veridyn/estimation/output_error/output_error.hpp"
 #include "veridyn/numerics/random.hpp"
 

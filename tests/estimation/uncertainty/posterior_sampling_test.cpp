@@ -8,6 +8,7 @@
 #include "tests/estimation/output_error/example_models.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/estimation/output_error/autodiff_model.hpp"
 
 namespace veridyn::estimation {
 namespace {

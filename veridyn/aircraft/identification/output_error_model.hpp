@@ -16,6 +16,7 @@
 #include "veridyn/core/enum_array.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/estimation/open_loop/open_loop_model.hpp"
+#include "veridyn/estimation/output_error/autodiff_model.hpp"
 
 namespace veridyn::aircraft {
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "veridyn/core/assert.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
 #include "veridyn/numerics/parallel.hpp"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "veridyn/core/assert.hpp"
 #include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
 
 namespace veridyn::estimation {

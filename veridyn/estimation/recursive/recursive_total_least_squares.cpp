@@ -11,7 +11,7 @@
 namespace veridyn::estimation {
 namespace {
 
-constexpr double kLargestValue = 1e150;
+constexpr double kLargestEntry = 1e150;
 constexpr double kDependentColumns = 1e-12;
 // Forgotten values below this become zero before they become slow (subnormal) numbers.
 constexpr double kForgotten = 1e-280;
@@ -85,7 +85,7 @@ bool RecursiveTotalLeastSquares::whiten_row(const double* row, double* y) const 
       for (int i = 0; i < size_; ++i) value += row[i] * t[i];
     }
     y[j] = value;
-    good = good && std::abs(value) <= kLargestValue && std::abs(row[j]) <= kLargestValue;
+    good = good && std::abs(value) <= kLargestEntry && std::abs(row[j]) <= kLargestEntry;
   }
   return good;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "veridyn/estimation/open_loop/open_loop_model.hpp"
+#include "veridyn/estimation/output_error/autodiff_model.hpp"
 #include "veridyn/vehicle/identification/drive_model_options.hpp"
 #include "veridyn/vehicle/identification/drive_signals.hpp"
 #include "veridyn/vehicle/identification/drive_whitening.hpp"

@@ -1,4 +1,4 @@
-#include "veridyn/estimation/output_error/parametric_model.hpp"
+#include "veridyn/estimation/output_error/autodiff_model.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ namespace {
 
 using namespace testing_support;
 
-TEST(ParametricModel, SensitivitiesAreThoseOfTheClosedForm) {
+TEST(AutodiffModel, SensitivitiesAreThoseOfTheClosedForm) {
   // u = 0: x = x0 exp(-a t), so dx/da = -t x, dx/dx0 = exp(-a t), dx/db = 0; rate = -a x.
   const FirstOrder model({VectorXd::Zero(50)}, 0.05);
   const std::vector<Index> active{2, 0, 1};
@@ -27,7 +27,7 @@ TEST(ParametricModel, SensitivitiesAreThoseOfTheClosedForm) {
   }
 }
 
-TEST(ParametricModel, SensitivitiesAreThoseOfCentralDifferences) {
+TEST(AutodiffModel, SensitivitiesAreThoseOfCentralDifferences) {
   const FirstOrder model(doublets(1, 80), 0.05);
   const VectorXd theta = Eigen::Vector3d(kA, kB, 0.4);
   const std::vector<Index> active{0, 1, 2};
@@ -72,7 +72,7 @@ class Forgetful : public AutodiffModel<Forgetful, 2> {
   const FirstOrder& whole_;
 };
 
-TEST(ParametricModel, InitialConditionsHaveAPassOfTheirOwnWhereThatSavesAWholeOne) {
+TEST(AutodiffModel, InitialConditionsHaveAPassOfTheirOwnWhereThatSavesAWholeOne) {
   const FirstOrder whole(doublets(1, 400), 0.05);
   const Forgetful model(whole);
   const VectorXd theta = Eigen::Vector3d(kA, kB, 0.4);
