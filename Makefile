@@ -1,6 +1,8 @@
 # The two commands are `make demo` and `make test`; each sets the machine up, builds, and runs.
 # Plain CMake presets (see CMakePresets.json) do the same for those who have the packages.
 BUILD  := build/release
+# Tests run with the assertions of Eigen and of the standard library (preset `test`).
+TESTED := build/test
 JOBS   ?= $(shell nproc)
 SHELL  := /bin/bash
 space  := $(subst ,, )
@@ -25,15 +27,15 @@ WAITING ?= 2
 
 test: setup format-check ## build and run the test suite
 	$(build_with_tests)
-	$(call run_tests,$(BUILD)) -LE 'soak|long'
+	$(call run_tests,$(TESTED)) -LE 'soak|long'
 
-long: setup ## tests of accuracy and of coverage over many recordings (label long); CI runs them after `make test`
+long: setup ## tests of accuracy and of coverage over many recordings (label long)
 	$(build_with_tests)
-	$(call run_tests,$(BUILD)) -L long
+	$(call run_tests,$(TESTED)) -L long
 
 define build_with_tests
-	cmake --preset release -DVERIDYN_TESTS=ON --log-level=WARNING
-	cmake --build $(BUILD) -j $(JOBS)
+	cmake --preset test --log-level=WARNING
+	cmake --build $(TESTED) -j $(JOBS)
 endef
 # Tests of a build folder: $(call run_tests,FOLDER) and which of them.
 define run_tests
@@ -54,9 +56,10 @@ format-check: setup
 
 TIDY ?= veridyn apps/veridyn
 
-tidy: setup ## clang-tidy on every module; TIDY="veridyn/io" for one
-	cmake --preset release -DVERIDYN_TESTS=ON --log-level=WARNING
-	tools/tidy.sh $(BUILD) $(JOBS) $(TIDY)
+tidy: setup ## clang-tidy on every module; TIDY="veridyn/io" for one, TIDY="$(tools/changed_folders.sh)" for what changed
+	@node tools/unnamed_names.mjs
+	cmake --preset test --log-level=WARNING
+	tools/tidy.sh $(TESTED) $(JOBS) $(TIDY)
 
 ASAN_MODULES ?= core numerics estimation io camera recording aircraft vehicle muscle cueing live report apps
 

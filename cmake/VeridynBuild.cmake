@@ -12,6 +12,9 @@ set(CMAKE_INSTALL_RPATH $ORIGIN/${from_bin_to_plugins})
 set(CMAKE_CXX_EXTENSIONS OFF)
 # The difference to -O3 is not measurable here, that in compile time is.
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
+if(VERIDYN_ASSERTIONS)
+  set(CMAKE_CXX_FLAGS_RELEASE "-O2 -D_GLIBCXX_ASSERTIONS")
+endif()
 
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
