@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "veridyn/core/enum_array.hpp"
-#include "veridyn/muscle/muscle_study_parts.hpp"
+#include "veridyn/muscle/study/muscle_study_parts.hpp"
 
 namespace veridyn::muscle {
 namespace {

@@ -6,14 +6,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "veridyn/aircraft/identification/body_error.hpp"
-#include "veridyn/aircraft/identification/chosen_output_error.hpp"
-#include "veridyn/aircraft/identification/coefficient_description.hpp"
-#include "veridyn/aircraft/identification/coefficient_evidence.hpp"
-#include "veridyn/aircraft/identification/coefficient_fit.hpp"
-#include "veridyn/aircraft/identification/error_variance.hpp"
-#include "veridyn/aircraft/identification/flight_rows.hpp"
-#include "veridyn/aircraft/identification/sensor_doubt.hpp"
+#include "veridyn/aircraft/identification/evidence/coefficient_evidence.hpp"
+#include "veridyn/aircraft/identification/evidence/sensor_doubt.hpp"
+#include "veridyn/aircraft/identification/fit/body_error.hpp"
+#include "veridyn/aircraft/identification/fit/coefficient_description.hpp"
+#include "veridyn/aircraft/identification/fit/coefficient_fit.hpp"
+#include "veridyn/aircraft/identification/fit/error_variance.hpp"
+#include "veridyn/aircraft/identification/output_error/chosen_output_error.hpp"
+#include "veridyn/aircraft/identification/rows/flight_rows.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/judgement/agreement.hpp"
 #include "veridyn/numerics/parallel.hpp"

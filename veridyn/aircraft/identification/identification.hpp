@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "veridyn/aircraft/identification/axis_output_error.hpp"
-#include "veridyn/aircraft/identification/prepared_flight.hpp"
+#include "veridyn/aircraft/identification/output_error/axis_output_error.hpp"
+#include "veridyn/aircraft/identification/rows/prepared_flight.hpp"
 #include "veridyn/aircraft/model/subject.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/study.hpp"

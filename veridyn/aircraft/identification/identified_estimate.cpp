@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "veridyn/aircraft/identification/identification.hpp"
-#include "veridyn/aircraft/identification/measured_coefficients.hpp"
+#include "veridyn/aircraft/identification/signals/measured_coefficients.hpp"
 #include "veridyn/core/constants.hpp"
 
 namespace veridyn::aircraft {

@@ -6,14 +6,14 @@
 #include <cmath>
 
 #include "veridyn/core/finishing_progress.hpp"
-#include "veridyn/vehicle/identification/estimated_vehicle.hpp"
-#include "veridyn/vehicle/identification/structure_doubt.hpp"
-#include "veridyn/vehicle/identification/structure_ladder.hpp"
-#include "veridyn/vehicle/identification/vehicle_estimates.hpp"
-#include "veridyn/vehicle/identification/vehicle_judgement.hpp"
-#include "veridyn/vehicle/identification/vehicle_plausibility.hpp"
-#include "veridyn/vehicle/identification/vehicle_prediction.hpp"
-#include "veridyn/vehicle/identification/vehicle_profiles.hpp"
+#include "veridyn/vehicle/identification/evidence/vehicle_judgement.hpp"
+#include "veridyn/vehicle/identification/evidence/vehicle_plausibility.hpp"
+#include "veridyn/vehicle/identification/fit/estimated_vehicle.hpp"
+#include "veridyn/vehicle/identification/fit/vehicle_estimates.hpp"
+#include "veridyn/vehicle/identification/fit/vehicle_profiles.hpp"
+#include "veridyn/vehicle/identification/structure/structure_doubt.hpp"
+#include "veridyn/vehicle/identification/structure/structure_ladder.hpp"
+#include "veridyn/vehicle/identification/validation/vehicle_prediction.hpp"
 
 namespace veridyn::vehicle {
 namespace {

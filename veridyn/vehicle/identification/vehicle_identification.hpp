@@ -13,12 +13,12 @@
 #include "veridyn/estimation/output_error/output_error.hpp"
 #include "veridyn/estimation/regression/regression.hpp"
 #include "veridyn/estimation/uncertainty/profile_likelihood.hpp"
-#include "veridyn/vehicle/identification/axle_estimate.hpp"
-#include "veridyn/vehicle/identification/drive_log.hpp"
-#include "veridyn/vehicle/identification/drive_parametric_model.hpp"
-#include "veridyn/vehicle/identification/drive_segments.hpp"
-#include "veridyn/vehicle/identification/drive_validation.hpp"
-#include "veridyn/vehicle/identification/vehicle_method.hpp"
+#include "veridyn/vehicle/identification/fit/axle_estimate.hpp"
+#include "veridyn/vehicle/identification/fit/drive_parametric_model.hpp"
+#include "veridyn/vehicle/identification/options/vehicle_method.hpp"
+#include "veridyn/vehicle/identification/signals/drive_log.hpp"
+#include "veridyn/vehicle/identification/signals/drive_segments.hpp"
+#include "veridyn/vehicle/identification/validation/drive_validation.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
 
 namespace veridyn::vehicle {
