@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "veridyn/aircraft/identification/identification.hpp"
 #include "veridyn/aircraft/identification/rows/coefficient_rows.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"

@@ -7,12 +7,12 @@
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/recording.hpp"
 #include "veridyn/io/opensim/storage.hpp"
-#include "veridyn/muscle/muscle_study.hpp"
 #include "veridyn/muscle/simulation/contact_record.hpp"
 #include "veridyn/muscle/simulation/external_load_check.hpp"
 #include "veridyn/muscle/simulation/induced_accelerations.hpp"
 #include "veridyn/muscle/simulation/joint_reactions.hpp"
 #include "veridyn/muscle/simulation/metabolic_cost.hpp"
+#include "veridyn/muscle/study/motion_study.hpp"
 
 namespace veridyn::muscle {
 

@@ -7,7 +7,7 @@
 
 #include "veridyn/core/study.hpp"
 #include "veridyn/muscle/identification/emg_driven_model.hpp"
-#include "veridyn/muscle/muscle_study.hpp"
+#include "veridyn/muscle/study/muscle_subject.hpp"
 #include "veridyn/muscle/tasks/task.hpp"
 
 namespace veridyn::muscle {

@@ -6,8 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include "veridyn/core/progress.hpp"
+#include "veridyn/core/study.hpp"
 #include "veridyn/muscle/model/ramp.hpp"
-#include "veridyn/muscle/muscle_study.hpp"
+#include "veridyn/muscle/study/motion_study.hpp"
 
 /// The parts that `read_study` reads one after the other, and what they share. Each throws InputError with file, line
 /// and key. A part that takes a study looks at what was read of it before.

@@ -7,8 +7,8 @@
 
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/study.hpp"
-#include "veridyn/muscle/muscle_study.hpp"
 #include "veridyn/muscle/sensitivity/muscle_sensitivity.hpp"
+#include "veridyn/muscle/study/muscle_subject.hpp"
 #include "veridyn/muscle/tasks/task.hpp"
 
 namespace veridyn::muscle {

@@ -4,9 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "veridyn/core/study.hpp"
 #include "veridyn/muscle/identification/muscle_outputs.hpp"
-#include "veridyn/muscle/muscle_study.hpp"
 #include "veridyn/muscle/study/muscle_study_emg.hpp"
+#include "veridyn/muscle/study/muscle_subject.hpp"
 #include "veridyn/muscle/tasks/elbow_tasks.hpp"
 #include "veridyn/muscle/tasks/task.hpp"
 

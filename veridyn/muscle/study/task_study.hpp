@@ -7,13 +7,15 @@
 #include <string>
 #include <vector>
 
+#include "veridyn/core/progress.hpp"
+#include "veridyn/core/study.hpp"
 #include "veridyn/estimation/uncertainty/ensemble_sampler.hpp"
 #include "veridyn/muscle/identification/muscle_outputs.hpp"
 #include "veridyn/muscle/identification/muscle_unknowns.hpp"
 #include "veridyn/muscle/identification/published_route.hpp"
 #include "veridyn/muscle/identification/task_estimate.hpp"
-#include "veridyn/muscle/muscle_study.hpp"
 #include "veridyn/muscle/study/muscle_study_tasks.hpp"
+#include "veridyn/muscle/study/muscle_subject.hpp"
 
 namespace veridyn::muscle {
 

@@ -243,5 +243,20 @@ TEST(Plausibility, TakesAWrongSignOrAnImpossibleLiftSlopeWithCare) {
   EXPECT_EQ(row(Coefficient::kCL, "CL_alpha", 12.0, 0.05).outcome, Outcome::kCare);
 }
 
+TEST(CoefficientEvidence, SaysHowMuchLargerTheResidualIsThanTheSensorsLeave) {
+  EXPECT_THAT(unmodelled_text(9.0, 0.25), HasSubstr("25 % of its variance"));
+  EXPECT_THAT(unmodelled_text(9.0, 0.25), HasSubstr("residual 3.0 times"));
+}
+
+// Where the errors of the regressors leave no signal, the ratio is unknown or, as a difference of variances, negative:
+// this used to print "residual -nan times".
+TEST(CoefficientEvidence, PrintsNoRatioWhereTheRegressorsLeaveNoSignal) {
+  for (const double ratio : {kNaN, -0.4, 0.0}) {
+    const std::string text = unmodelled_text(ratio, ratio == ratio ? 1.2 : kNaN);
+    EXPECT_THAT(text, Not(HasSubstr("nan"))) << ratio;
+    EXPECT_THAT(text, HasSubstr("leave no signal")) << ratio;
+  }
+}
+
 }  // namespace
 }  // namespace veridyn::aircraft

@@ -6,6 +6,7 @@
 
 #include "tests/aircraft/pitching_flight.hpp"
 #include "veridyn/aircraft/identification/identification.hpp"
+#include "veridyn/aircraft/identification/identified_estimate.hpp"
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/random.hpp"

@@ -1,9 +1,10 @@
+#include "veridyn/aircraft/identification/options/identify_options.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "veridyn/aircraft/identification/identification.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/study.hpp"
 

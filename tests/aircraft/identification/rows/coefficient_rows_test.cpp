@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "veridyn/aircraft/identification/identification.hpp"
+#include "veridyn/aircraft/identification/rows/coefficient_rows.hpp"
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
 #include "veridyn/core/constants.hpp"
 
@@ -53,6 +53,13 @@ TEST(CoefficientRows, AreRefusedByTheNameOfWhatTheLogLacks) {
   s[FlightSignal::kElevator].value.clear();
   EXPECT_EQ(identification_obstacle(subject.model.at(Coefficient::kCm), s, subject),
             "Cm needs elevator, which the log does not have");
+}
+
+TEST(CoefficientRows, AxisOfACoefficientIsWhatItsMotionIs) {
+  for (const Coefficient c : {Coefficient::kCL, Coefficient::kCD, Coefficient::kCm})
+    EXPECT_EQ(axis_of(c), Axis::kLongitudinal);
+  for (const Coefficient c : {Coefficient::kCY, Coefficient::kCl, Coefficient::kCn})
+    EXPECT_EQ(axis_of(c), Axis::kLateral);
 }
 
 }  // namespace

@@ -1,9 +1,12 @@
+#include "veridyn/aircraft/identification/validation/evaluated_estimate.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/aircraft/pitching_flight.hpp"
 #include "tests/support/refusal.hpp"
 #include "veridyn/aircraft/identification/identification.hpp"
+#include "veridyn/aircraft/identification/identified_estimate.hpp"
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
 
 namespace veridyn::aircraft {

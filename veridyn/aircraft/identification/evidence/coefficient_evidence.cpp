@@ -174,6 +174,17 @@ std::vector<Evidence> coefficient_evidence(const std::string& name, const Coeffi
   return rows;
 }
 
+std::string unmodelled_text(double error_ratio, double unmodelled_share) {
+  const double times = std::sqrt(std::max(0.0, error_ratio));
+  if (!(error_ratio > 0.0) || !std::isfinite(times) || !std::isfinite(unmodelled_share)) {
+    return "the errors of its regressors leave no signal to judge by how much of its residual is noise of the sensors";
+  }
+  return fmt::format(
+      "{:.0f} % of its variance is neither modelled nor sensor noise (residual {:.1f} times what the sensors leave), "
+      "so something that moves the aircraft is not among the regressors and biases them",
+      100.0 * unmodelled_share, times);
+}
+
 Evidence scatter_row(const std::string& name, const estimation::GroupScatter& scatter,
                      const estimation::RegressionEstimate& chosen) {
   Evidence row{.name = "scatter between flights",

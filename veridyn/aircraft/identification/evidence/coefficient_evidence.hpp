@@ -4,10 +4,21 @@
 #include <string>
 #include <vector>
 
-#include "veridyn/aircraft/identification/identification.hpp"
+#include "veridyn/aircraft/identification/options/identify_options.hpp"
+#include "veridyn/aircraft/model/subject.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/estimation/analysis.hpp"
+#include "veridyn/estimation/judgement/evidence.hpp"
+#include "veridyn/estimation/regression/group_scatter.hpp"
+#include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::aircraft {
+
+/// How well a coefficient is predicted in one of several flights.
+struct FlightFit {
+  std::string flight;
+  numerics::FitMeasures fit = {};
+};
 
 /// Figures by which the estimate of a coefficient is judged; see CoefficientResult.
 struct CoefficientChecks {
@@ -32,6 +43,10 @@ struct CoefficientChecks {
                                                                      const CoefficientChecks& checks,
                                                                      const estimation::RegressionComparison& comparison,
                                                                      const IdentifyOptions& options);
+
+/// Why a coefficient is rejected whose residual is more than the sensors' noise: one clause, without its name. The
+/// arguments are those of CoefficientResult.
+[[nodiscard]] std::string unmodelled_text(double error_ratio, double unmodelled_share);
 
 /// The row "scatter between flights": do several flights have the same parameters within their error bars (Cochran's
 /// Q)? With care where they have not: the intervals of `chosen` are then those of the mean of flights like these, from

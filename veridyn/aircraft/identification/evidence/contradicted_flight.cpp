@@ -53,29 +53,6 @@ Segments recorded_flight(const Recording& recording, double min_airspeed_mps) {
   return segments;
 }
 
-std::vector<CoefficientResult> not_identified(const Subject& subject, const IdentifyOptions& options,
-                                              const Contradiction& contradiction,
-                                              std::span<const FlightEvidence> evidence) {
-  std::vector<CoefficientResult> results;
-  for (const Coefficient coefficient : enumerators<Coefficient, kCoefficients>()) {
-    const CoefficientModel* model = subject.model.find(coefficient);
-    const auto& some = options.coefficients;
-    if (model == nullptr || (!some.empty() && std::ranges::find(some, coefficient) == some.end())) continue;
-    CoefficientResult result;
-    result.coefficient = coefficient;
-    result.name = std::string(name_of(coefficient));
-    result.axis = axis_of(coefficient);
-    result.model = *model;
-    result.reason = fmt::format("{} is not identified: the motion is not known, {} contradicts {}", result.name,
-                                contradiction.channel, contradiction.against);
-    for (const FlightEvidence& row : evidence)
-      if (row.bears_on(coefficient)) result.evidence.push_back(row.row);
-    result.judgement = estimation::judge(result.evidence);
-    results.push_back(std::move(result));
-  }
-  return results;
-}
-
 FlightEvidence contradiction_row(const Contradiction& contradiction, double limit_s,
                                  std::span<const FlightEvidence> causes) {
   const auto cause =

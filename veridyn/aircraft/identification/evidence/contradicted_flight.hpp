@@ -1,8 +1,9 @@
 #pragma once
 
-#include <vector>
+#include <span>
 
-#include "veridyn/aircraft/identification/identification.hpp"
+#include "veridyn/aircraft/identification/evidence/flight_evidence.hpp"
+#include "veridyn/aircraft/identification/signals/segments.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct.hpp"
 
 /// What is said of a flight whose reconstruction ended at a contradiction.
@@ -11,12 +12,6 @@ namespace veridyn::aircraft {
 /// Where a recording flies by its own airspeed (or else dynamic pressure at sea level, or ground speed) above
 /// `min_airspeed_mps`, with interruptions of up to 2 s; no excited stretches.
 [[nodiscard]] Segments recorded_flight(const Recording& recording, double min_airspeed_mps);
-
-/// Every coefficient that would have been identified, skipped for the contradiction; `evidence` are the rows of the
-/// recording.
-[[nodiscard]] std::vector<CoefficientResult> not_identified(const Subject& subject, const IdentifyOptions& options,
-                                                            const Contradiction& contradiction,
-                                                            std::span<const FlightEvidence> evidence);
 
 /// The row of the contradiction. `causes` are the other rows of the recording: where one of them has found the sensor
 /// that is wrong, the row is about that, else about the sensor that was refused. `limit_s`: of refusal.

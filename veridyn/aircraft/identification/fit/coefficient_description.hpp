@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "veridyn/aircraft/identification/identification.hpp"
+#include "veridyn/aircraft/identification/fit/coefficient_result.hpp"
 #include "veridyn/aircraft/identification/rows/flight_rows.hpp"
 #include "veridyn/numerics/statistics.hpp"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "veridyn/aircraft/identification/evidence/coefficient_evidence.hpp"
-#include "veridyn/aircraft/identification/identification.hpp"
+#include "veridyn/aircraft/identification/options/identify_options.hpp"
 #include "veridyn/aircraft/identification/rows/flight_rows.hpp"
 #include "veridyn/estimation/regression/group_scatter.hpp"
 

@@ -1,8 +1,9 @@
+#include "veridyn/aircraft/identification/options/identify_options.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "veridyn/aircraft/identification/identification.hpp"
 #include "veridyn/core/nearest.hpp"
 
 namespace veridyn::aircraft {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "veridyn/aircraft/identification/identification.hpp"
+#include "veridyn/aircraft/identification/options/identify_options.hpp"
 #include "veridyn/aircraft/identification/output_error/output_error_model.hpp"
 
 namespace veridyn::aircraft {

@@ -8,6 +8,7 @@
 
 #include "veridyn/aircraft/identification/fit/coefficient_description.hpp"
 #include "veridyn/aircraft/identification/fit/error_variance.hpp"
+#include "veridyn/aircraft/identification/rows/coefficient_rows.hpp"
 
 namespace veridyn::aircraft::internal {
 namespace {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "veridyn/aircraft/identification/identification.hpp"
 #include "veridyn/aircraft/identification/signals/measured_coefficients.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/numerics/linear_algebra/orthogonal.hpp"

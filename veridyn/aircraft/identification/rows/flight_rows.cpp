@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "veridyn/aircraft/identification/identification.hpp"
+#include "veridyn/aircraft/identification/rows/coefficient_rows.hpp"
 
 namespace veridyn::aircraft {
 namespace {

@@ -1,10 +1,11 @@
+#include "veridyn/aircraft/identification/validation/evaluated_estimate.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 
 #include "veridyn/aircraft/identification/fit/coefficient_description.hpp"
-#include "veridyn/aircraft/identification/identification.hpp"
 #include "veridyn/aircraft/model/estimated_subject.hpp"
 #include "veridyn/core/error.hpp"
 

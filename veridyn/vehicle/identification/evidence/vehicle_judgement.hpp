@@ -1,12 +1,17 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "veridyn/estimation/analysis.hpp"
+#include "veridyn/estimation/judgement/judgement.hpp"
 #include "veridyn/estimation/judgement/unfinished_search.hpp"
 #include "veridyn/vehicle/identification/evidence/vehicle_agreement.hpp"
 #include "veridyn/vehicle/identification/fit/vehicle_estimates.hpp"
+#include "veridyn/vehicle/identification/structure/tried_structure.hpp"
+#include "veridyn/vehicle/identification/validation/drive_validation.hpp"
 
 namespace veridyn::vehicle {
 

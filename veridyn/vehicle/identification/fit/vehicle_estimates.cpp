@@ -272,10 +272,6 @@ VehicleEstimate estimate_of(const VehicleProblem& problem, const GeometrySlopes&
 
 }  // namespace
 
-double understeer_gradient(const VehicleParameters<double>& p) {
-  return 0.5 * p.mass / p.wheelbase() * (p.b / p.C_f - p.a / p.C_r);
-}
-
 DriveRegressionResult regress(const VehicleProblem& problem, std::span<const TimeSpan> spans,
                               const VehicleParameters<double>& known) {
   estimation::RegressionOptions options;
@@ -424,13 +420,6 @@ VehicleMethod choose_method(std::span<const VehicleEstimate> estimates, const Dr
   const AxleEstimate* pca = regression->find(Method::kPcaGtls);
   const bool understeer = pca != nullptr && pca->understeer_only && std::isfinite(pca->understeer_sigma);
   return understeer ? VehicleMethod::kPcaGtls : VehicleMethod::kNone;
-}
-
-const VehicleEstimate* find_estimate(std::span<const VehicleEstimate> estimates, VehicleMethod method) {
-  for (const VehicleEstimate& e : estimates) {
-    if (e.method == method) return &e;
-  }
-  return nullptr;
 }
 
 }  // namespace veridyn::vehicle

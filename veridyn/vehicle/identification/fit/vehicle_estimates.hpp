@@ -6,7 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "veridyn/vehicle/identification/vehicle_identification.hpp"
+#include "veridyn/core/progress.hpp"
+#include "veridyn/estimation/output_error/output_error.hpp"
+#include "veridyn/vehicle/identification/fit/axle_estimate.hpp"
+#include "veridyn/vehicle/identification/fit/drive_parametric_model.hpp"
+#include "veridyn/vehicle/identification/fit/drive_whitening.hpp"
+#include "veridyn/vehicle/identification/fit/vehicle_estimate.hpp"
+#include "veridyn/vehicle/identification/fit/vehicle_problem.hpp"
 
 namespace veridyn::vehicle {
 
@@ -79,8 +85,5 @@ struct OutputErrorProblem {
 [[nodiscard]] VehicleMethod choose_method(std::span<const VehicleEstimate> estimates,
                                           const DriveRegressionResult* regression,
                                           std::optional<VehicleMethod> desired);
-
-/// The estimate by a method, or null.
-[[nodiscard]] const VehicleEstimate* find_estimate(std::span<const VehicleEstimate> estimates, VehicleMethod method);
 
 }  // namespace veridyn::vehicle

@@ -58,14 +58,4 @@ estimation::ProfileResult profile_drive(const VehicleProblem& problem, const Equ
                                         progress);
 }
 
-std::vector<estimation::Parameter> profiled_parameters(const VehicleIdentification& identification) {
-  if (!identification.output_error) return {};
-  std::vector<estimation::Parameter> parameters = identification.output_error->parameters;
-  const VehicleEstimate* shown = identification.find(VehicleMethod::kOutputError);
-  for (estimation::Parameter& p : parameters) {
-    if (const estimation::Parameter* estimate = shown != nullptr ? shown->find(p.name) : nullptr) p = *estimate;
-  }
-  return parameters;
-}
-
 }  // namespace veridyn::vehicle

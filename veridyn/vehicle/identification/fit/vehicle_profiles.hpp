@@ -22,8 +22,4 @@ inline constexpr double kProfileReach = 10.0;
                                                       const OutputErrorResult& output_error, double widening,
                                                       Progress& progress);
 
-/// The output-error estimate in the order of the drive's model, as reports compare profiles with it; those in the
-/// vehicle's estimate as they are there.
-[[nodiscard]] std::vector<estimation::Parameter> profiled_parameters(const VehicleIdentification& identification);
-
 }  // namespace veridyn::vehicle

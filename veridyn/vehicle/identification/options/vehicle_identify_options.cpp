@@ -1,8 +1,9 @@
+#include "veridyn/vehicle/identification/options/vehicle_identify_options.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "veridyn/estimation/uncertainty/profile_choice.hpp"
-#include "veridyn/vehicle/identification/vehicle_identification.hpp"
 
 namespace veridyn::vehicle {
 namespace {

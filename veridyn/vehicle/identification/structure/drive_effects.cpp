@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "veridyn/numerics/modulating_kernel.hpp"
+#include "veridyn/vehicle/identification/fit/drive_parametric_model.hpp"
 
 namespace veridyn::vehicle {
 namespace {

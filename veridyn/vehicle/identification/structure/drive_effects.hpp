@@ -1,6 +1,7 @@
 #pragma once
 
-#include "veridyn/vehicle/identification/vehicle_identification.hpp"
+#include "veridyn/vehicle/identification/fit/vehicle_problem.hpp"
+#include "veridyn/vehicle/identification/options/drive_structure.hpp"
 
 namespace veridyn::vehicle {
 

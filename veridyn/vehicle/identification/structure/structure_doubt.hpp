@@ -4,7 +4,8 @@
 #include <span>
 
 #include "veridyn/estimation/judgement/judgement.hpp"
-#include "veridyn/vehicle/identification/vehicle_identification.hpp"
+#include "veridyn/vehicle/identification/fit/vehicle_estimate.hpp"
+#include "veridyn/vehicle/identification/structure/tried_structure.hpp"
 
 namespace veridyn::vehicle {
 

@@ -8,7 +8,7 @@
 #include "veridyn/core/progress.hpp"
 #include "veridyn/estimation/judgement/unfinished_search.hpp"
 #include "veridyn/vehicle/identification/fit/vehicle_estimates.hpp"
-#include "veridyn/vehicle/identification/options/drive_structure.hpp"
+#include "veridyn/vehicle/identification/structure/tried_structure.hpp"
 
 namespace veridyn::vehicle {
 

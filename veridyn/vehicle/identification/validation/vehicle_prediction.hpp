@@ -3,7 +3,11 @@
 #include <Eigen/Core>
 #include <span>
 
-#include "veridyn/vehicle/identification/vehicle_identification.hpp"
+#include "veridyn/core/progress.hpp"
+#include "veridyn/estimation/output_error/output_error.hpp"
+#include "veridyn/vehicle/identification/fit/vehicle_estimate.hpp"
+#include "veridyn/vehicle/identification/fit/vehicle_problem.hpp"
+#include "veridyn/vehicle/identification/validation/drive_validation.hpp"
 
 namespace veridyn::vehicle {
 
