@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "veridyn/core/progress.hpp"
+#include "veridyn/vehicle/identification/signals/drive_log.hpp"
 #include "veridyn/vehicle/identification/signals/drive_segments.hpp"
 #include "veridyn/vehicle/identification/vehicle_identification.hpp"
 #include "veridyn/vehicle/manoeuvre/manoeuvre.hpp"

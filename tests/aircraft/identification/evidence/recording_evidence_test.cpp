@@ -18,6 +18,7 @@ using aircraft::testing::reconstructed;
 using aircraft::testing::reference_options;
 using estimation::Grade;
 using estimation::Outcome;
+using ::testing::HasSubstr;
 
 const Flown& flown() {
   static const Flown flight = fly({.duration = 120.0, .seed = 4});

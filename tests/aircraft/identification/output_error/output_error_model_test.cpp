@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "veridyn/aircraft/model/builtin_subjects.hpp"
 #include "veridyn/aircraft/model/flight_dynamics.hpp"
 #include "veridyn/core/study.hpp"
 

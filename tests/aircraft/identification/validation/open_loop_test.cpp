@@ -10,6 +10,7 @@
 
 #include "tests/aircraft/identification/flown_flight.hpp"
 #include "tests/aircraft/model/jsbsim_aircraft.hpp"
+#include "veridyn/aircraft/identification/rows/coefficient_rows.hpp"
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
 #include "veridyn/aircraft/model/jsbsim.hpp"
 #include "veridyn/core/error.hpp"

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "tests/vehicle/simulated_drive.hpp"
+#include "veridyn/vehicle/identification/vehicle_identification.hpp"
 
 namespace veridyn::vehicle {
 namespace {

@@ -18,6 +18,7 @@ namespace {
 
 using testing::drive_bicycle;
 using testing::family_car;
+using testing::lively_drive;
 using testing::mapped;
 
 // The bicycle with small angles obeys both relations without error, so each coefficient is its closed form.

@@ -11,6 +11,7 @@
 
 #include "tests/vehicle/simulated_drive.hpp"
 #include "tests/vehicle/simulation/drives.hpp"
+#include "veridyn/vehicle/identification/vehicle_identification.hpp"
 #include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
 
 namespace veridyn::vehicle {
