@@ -7,6 +7,7 @@
 #include <string>
 
 #include "veridyn/aircraft/aircraft_study.hpp"
+#include "veridyn/aircraft/identification/identified_estimate.hpp"
 #include "veridyn/core/constants.hpp"
 
 int main() try {

@@ -4,7 +4,8 @@
 #include <cstdio>
 
 #include "veridyn/core/progress.hpp"
-#include "veridyn/vehicle/identification/drive_segments.hpp"
+#include "veridyn/vehicle/identification/signals/drive_log.hpp"
+#include "veridyn/vehicle/identification/signals/drive_segments.hpp"
 #include "veridyn/vehicle/identification/vehicle_identification.hpp"
 #include "veridyn/vehicle/manoeuvre/manoeuvre.hpp"
 #include "veridyn/vehicle/model/bicycle_model.hpp"

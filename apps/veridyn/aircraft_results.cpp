@@ -11,7 +11,7 @@
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/open_loop_results.hpp"
 #include "apps/veridyn/version.hpp"
-#include "veridyn/aircraft/identification/flight_set.hpp"
+#include "veridyn/aircraft/identification/rows/flight_set.hpp"
 #include "veridyn/aircraft/model/jsbsim.hpp"
 #include "veridyn/estimation/judgement/subject_grades.hpp"
 #include "veridyn/io/results/estimate_json.hpp"

@@ -13,7 +13,7 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/estimation/judgement/subject_grades.hpp"
-#include "veridyn/vehicle/identification/estimated_vehicle.hpp"
+#include "veridyn/vehicle/identification/fit/estimated_vehicle.hpp"
 #include "veridyn/vehicle/identification/vehicle_identification.hpp"
 #include "veridyn/vehicle/tyre/tir_writer.hpp"
 

@@ -13,7 +13,7 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/recording/channel_recognition.hpp"
 #include "veridyn/recording/study_data.hpp"
-#include "veridyn/vehicle/identification/drive_log.hpp"
+#include "veridyn/vehicle/identification/signals/drive_log.hpp"
 
 namespace veridyn::app {
 namespace {

@@ -11,7 +11,7 @@
 #include "veridyn/recording/drive_axis_check.hpp"
 #include "veridyn/recording/ros_topics.hpp"
 #include "veridyn/recording/study_data.hpp"
-#include "veridyn/vehicle/identification/drive_log.hpp"
+#include "veridyn/vehicle/identification/signals/drive_log.hpp"
 
 namespace veridyn::app {
 namespace {

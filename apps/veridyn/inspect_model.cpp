@@ -8,9 +8,9 @@
 
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/output_folder.hpp"
-#include "veridyn/muscle/model_check.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
 #include "veridyn/muscle/simulation/pose_table.hpp"
+#include "veridyn/muscle/study/model_check.hpp"
 
 namespace veridyn::app {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/output_folder.hpp"
-#include "veridyn/muscle/identify_muscles.hpp"
+#include "veridyn/muscle/study/identify_muscles.hpp"
 
 namespace veridyn::app {
 

@@ -13,8 +13,8 @@
 #include "apps/veridyn/response_results.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/io/results/indices_csv.hpp"
-#include "veridyn/muscle/muscle_study_sensitivity.hpp"
 #include "veridyn/muscle/sensitivity/sensitivity_tables.hpp"
+#include "veridyn/muscle/study/muscle_study_sensitivity.hpp"
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/report/sensitivity_report.hpp"
 

@@ -12,8 +12,8 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/io/tables/csv.hpp"
-#include "veridyn/muscle/muscle_run.hpp"
 #include "veridyn/muscle/osim/external_loads_file.hpp"
+#include "veridyn/muscle/study/muscle_run.hpp"
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/report/muscle_report.hpp"
 

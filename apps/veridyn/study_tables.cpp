@@ -8,7 +8,7 @@
 #include "veridyn/aircraft/sensors/channel_map.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/recording/study_data.hpp"
-#include "veridyn/vehicle/identification/drive_log.hpp"
+#include "veridyn/vehicle/identification/signals/drive_log.hpp"
 #include "veridyn/vehicle/model/vehicle.hpp"
 #include "veridyn/vehicle/scale_study.hpp"
 #include "veridyn/vehicle/simulation_study.hpp"

@@ -1,7 +1,7 @@
 // Monte Carlo uncertainty of all six coefficients: 1e5 draws of 25 coupled inputs and their errors.
 #include <benchmark/benchmark.h>
 
-#include "veridyn/aircraft/identification/coefficient_uncertainty.hpp"
+#include "veridyn/aircraft/identification/fit/coefficient_uncertainty.hpp"
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
 
 namespace {

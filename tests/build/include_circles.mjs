@@ -1,5 +1,6 @@
-// Fails where files or folders of the library include each other in a circle, or where a module includes one that is not
-// to its left in the line of layers of docs/architecture.md ("core < numerics < ... < (aircraft, vehicle, muscle) < ...").
+// Fails where files or folders of the library include each other in a circle, a folder taken with all below it too; where a
+// file includes one of the folder above its own; or where a module includes one that is not to its left in the line of
+// layers of docs/architecture.md ("core < numerics < ... < (aircraft, vehicle, muscle) < ...").
 //   node include_circles.mjs SOURCE_FOLDER
 import { readdirSync, readFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
@@ -49,6 +50,14 @@ function circle(to) {
   return null;
 }
 
+/// The folders that a file lies in, from its own up.
+function parents(file) {
+  const folders = [];
+  for (let folder = dirname(file); folder !== '.'; folder = dirname(folder)) folders.push(folder);
+  return folders;
+}
+const isFile = (path) => /\.[ch]pp$/.test(path);
+
 /// The layer of each module, from the lowest.
 function layers() {
   const text = readFileSync(join(root, 'docs/architecture.md'), 'utf8');
@@ -69,6 +78,23 @@ const faults = [];
 for (const [what, named] of [['files', (file) => file], ['folders', dirname]]) {
   const found = circle(graph(edges.map(([from, to]) => [named(from), named(to)])));
   if (found) faults.push(`${what} include each other: ${found.join(' -> ')}`);
+}
+/// The entry of `folder` that a file lies in or is: a/b/c.hpp and a/b/d/e.hpp are a/b/d and a/b/c.hpp of a/b; null: elsewhere.
+function entryOf(folder, file) {
+  if (!file.startsWith(`${folder}/`)) return null;
+  const name = file.slice(folder.length + 1).split('/')[0];
+  return `${folder}/${name}`;
+}
+for (const folder of new Set(files.flatMap((file) => parents(file)))) {
+  const inside = edges.map(([from, to]) => [entryOf(folder, from), entryOf(folder, to)]);
+  const found = circle(graph(inside.filter(([from, to]) => from !== null && to !== null && !isFile(from) && !isFile(to))));
+  if (found) faults.push(`folders with all below them include each other: ${found.join(' -> ')}`);
+}
+// The top of these modules is what their sub-modules share; elsewhere it puts together what the sub-modules do.
+const sharedTops = new Set(['veridyn/estimation', 'veridyn/numerics']);
+for (const [from, to] of edges) {
+  const above = dirname(to);
+  if (above !== dirname(from) && parents(from).includes(above) && !sharedTops.has(above)) faults.push(`${from} includes ${to}, of a folder above`);
 }
 const layer = layers();
 for (const [from, to] of edges) {

@@ -5,7 +5,7 @@
 
 #include "tests/support/refusal.hpp"
 #include "tests/vehicle/simulated_drive.hpp"
-#include "veridyn/vehicle/identification/drive_signals.hpp"
+#include "veridyn/vehicle/identification/signals/drive_signals.hpp"
 
 namespace veridyn::vehicle::testing {
 

@@ -7,7 +7,7 @@
 
 #include "veridyn/core/study.hpp"
 #include "veridyn/numerics/random.hpp"
-#include "veridyn/vehicle/identification/drive_log.hpp"
+#include "veridyn/vehicle/identification/signals/drive_log.hpp"
 #include "veridyn/vehicle/model/bicycle_model.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
 #include "veridyn/vehicle/model/vehicle_trajectory.hpp"

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "veridyn/aircraft/identification/contradicted_flight.hpp"
-#include "veridyn/aircraft/identification/direct_air_data.hpp"
-#include "veridyn/aircraft/identification/excited_segments.hpp"
-#include "veridyn/aircraft/identification/flight_set.hpp"
+#include "veridyn/aircraft/identification/evidence/contradicted_flight.hpp"
+#include "veridyn/aircraft/identification/evidence/recording_evidence.hpp"
+#include "veridyn/aircraft/identification/identified_estimate.hpp"
 #include "veridyn/aircraft/identification/parameter_groups.hpp"
-#include "veridyn/aircraft/identification/recording_evidence.hpp"
+#include "veridyn/aircraft/identification/rows/flight_set.hpp"
+#include "veridyn/aircraft/identification/signals/direct_air_data.hpp"
+#include "veridyn/aircraft/identification/signals/excited_segments.hpp"
+#include "veridyn/aircraft/identification/validation/evaluated_estimate.hpp"
 #include "veridyn/aircraft/reconstruction/filter_comparison.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct_streams.hpp"
 #include "veridyn/core/error.hpp"

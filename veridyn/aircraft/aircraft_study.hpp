@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "veridyn/aircraft/identification/coefficient_uncertainty.hpp"
+#include "veridyn/aircraft/identification/fit/coefficient_uncertainty.hpp"
 #include "veridyn/aircraft/identification/identification.hpp"
-#include "veridyn/aircraft/identification/open_loop.hpp"
 #include "veridyn/aircraft/identification/other_estimators.hpp"
-#include "veridyn/aircraft/identification/validation.hpp"
+#include "veridyn/aircraft/identification/validation/open_loop.hpp"
+#include "veridyn/aircraft/identification/validation/validation.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct.hpp"
 #include "veridyn/aircraft/sensors/delays.hpp"
 #include "veridyn/aircraft/simulation/simulation.hpp"

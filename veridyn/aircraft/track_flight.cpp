@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "veridyn/aircraft/identification/direct_air_data.hpp"
-#include "veridyn/aircraft/identification/excited_segments.hpp"
-#include "veridyn/aircraft/identification/recording_evidence.hpp"
+#include "veridyn/aircraft/identification/evidence/recording_evidence.hpp"
+#include "veridyn/aircraft/identification/signals/direct_air_data.hpp"
+#include "veridyn/aircraft/identification/signals/excited_segments.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct_streams.hpp"
 #include "veridyn/aircraft/tracking/tracking_judgement.hpp"
 #include "veridyn/core/constants.hpp"

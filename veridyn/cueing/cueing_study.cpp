@@ -14,7 +14,7 @@
 #include "veridyn/cueing/washout/shared_channels.hpp"
 #include "veridyn/recording/drive_axis_check.hpp"
 #include "veridyn/recording/motion_recording.hpp"
-#include "veridyn/vehicle/identification/drive_log.hpp"
+#include "veridyn/vehicle/identification/signals/drive_log.hpp"
 #include "veridyn/vehicle/simulation/trajectory_motion.hpp"
 #include "veridyn/vehicle/simulation_study.hpp"
 

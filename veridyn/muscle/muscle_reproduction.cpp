@@ -10,7 +10,7 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
-#include "veridyn/muscle/identify_muscles.hpp"
+#include "veridyn/muscle/study/identify_muscles.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::muscle {

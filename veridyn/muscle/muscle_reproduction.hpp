@@ -7,7 +7,7 @@
 #include "veridyn/core/check.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/progress.hpp"
-#include "veridyn/muscle/task_study.hpp"
+#include "veridyn/muscle/study/task_study.hpp"
 
 namespace veridyn::muscle {
 

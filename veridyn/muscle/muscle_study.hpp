@@ -1,75 +1,10 @@
 #pragma once
 
-#include <filesystem>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/study.hpp"
-#include "veridyn/muscle/model/signals.hpp"
-#include "veridyn/muscle/osim/osim_reader.hpp"
-#include "veridyn/muscle/simulation/computed_muscle_control.hpp"
-#include "veridyn/muscle/simulation/forward_simulation.hpp"
-#include "veridyn/muscle/simulation/joint_reactions.hpp"
-#include "veridyn/muscle/simulation/metabolic_cost.hpp"
-#include "veridyn/muscle/simulation/musculoskeletal_system.hpp"
-#include "veridyn/muscle/simulation/static_optimization.hpp"
+#include "veridyn/muscle/study/motion_study.hpp"
 
 namespace veridyn::muscle {
-
-/// What a muscle study computes.
-enum class MuscleMethod {
-  kForward,                ///< from excitations to the motion
-  kInverseDynamics,        ///< from the motion to generalised forces
-  kStaticOptimization,     ///< from the motion to activations, each instant by itself
-  kComputedMuscleControl,  ///< from the motion to excitations that make the muscles follow it
-};
-
-/// The word of the study: "forward", "inverse dynamics", "static optimization", "computed muscle control".
-[[nodiscard]] std::string_view method_name(MuscleMethod method);
-
-/// A parameter that the study sets otherwise than the model file.
-struct ParameterChange {
-  std::string muscle;
-  std::string parameter;
-  double before = 0.0;
-  double after = 0.0;
-};
-
-/// The musculoskeletal model of a study, read, changed as the study says and prepared.
-struct MuscleSubject {
-  std::string title;             ///< of the study; the model's name when left out
-  std::string model_name;        ///< as the study names it
-  std::optional<OsimFile> file;  ///< as read; always set where a study was read
-  Model written;                 ///< the file's model with the study's parameters: what is written back
-  std::vector<HeldLoad> loads;   ///< in the system's masses, not in `written`
-  std::vector<ParameterChange> changes;
-  std::unique_ptr<MusculoskeletalSystem> system;
-  std::vector<std::string> warnings;
-  std::vector<std::filesystem::path> inputs;  ///< files read
-};
-
-/// A study of a musculoskeletal model, read and checked: the prepared model, and what is to be computed.
-struct MuscleStudy : MuscleSubject {
-  MuscleMethod method = MuscleMethod::kForward;
-  double begin = 0.0, end = 1.0;  ///< [s]
-  double rate_Hz = 200.0;
-  double accuracy = 1e-5;
-  std::vector<double> reserves = {};  ///< by coordinate: force of the actuator that helps it [N m or N]; 0: none
-
-  std::optional<ReactionFrame> reactions = {};     ///< what joints transmit is computed, in these axes
-  std::optional<MetabolicOptions> metabolic = {};  ///< the energy that muscles use is computed
-  bool induced_accelerations = false;              ///< what each force contributes to accelerations is computed
-
-  StartState start = {};                               ///< forward
-  MuscleControls controls = {};                        ///< forward
-  Motion motion = {};                                  ///< otherwise: every free and driven coordinate
-  std::vector<std::string> desired_coordinates = {};   ///< coordinates whose motion the study gives; the others rest
-  ControlOptions control = {};                         ///< computed muscle control, begin to rate set from above
-  StaticOptimizationOptions static_optimization = {};  ///< reserves set from above
-};
 
 /// A muscle study is one whose `[subject]` names a `model`.
 [[nodiscard]] bool is_muscle_study(const StudyTable& root);

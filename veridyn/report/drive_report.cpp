@@ -18,7 +18,7 @@
 #include "veridyn/report/parts/remarks.hpp"
 #include "veridyn/report/parts/tried_structures_section.hpp"
 #include "veridyn/report/vehicle_report.hpp"
-#include "veridyn/vehicle/identification/vehicle_profiles.hpp"
+#include "veridyn/vehicle/identification/fit/vehicle_profiles.hpp"
 #include "veridyn/vehicle/model/bicycle_analysis.hpp"
 
 namespace veridyn::report {

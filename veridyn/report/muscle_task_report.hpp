@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "veridyn/muscle/identify_muscles.hpp"
+#include "veridyn/muscle/study/identify_muscles.hpp"
 #include "veridyn/report/document/document.hpp"
 
 namespace veridyn::report {

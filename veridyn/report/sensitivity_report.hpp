@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "veridyn/muscle/muscle_study_sensitivity.hpp"
+#include "veridyn/muscle/study/muscle_study_sensitivity.hpp"
 #include "veridyn/report/document/document.hpp"
 
 namespace veridyn::report {

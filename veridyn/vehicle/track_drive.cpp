@@ -9,7 +9,7 @@
 #include "veridyn/numerics/filters.hpp"
 #include "veridyn/numerics/modulating_kernel.hpp"
 #include "veridyn/recording/study_data.hpp"
-#include "veridyn/vehicle/identification/drive_evidence.hpp"
+#include "veridyn/vehicle/identification/evidence/drive_evidence.hpp"
 
 namespace veridyn::vehicle {
 namespace {

@@ -8,9 +8,9 @@
 #include <cmath>
 
 #include "veridyn/core/error.hpp"
-#include "veridyn/vehicle/identification/drive_evidence.hpp"
-#include "veridyn/vehicle/identification/estimated_drive_model.hpp"
-#include "veridyn/vehicle/identification/vehicle_prediction.hpp"
+#include "veridyn/vehicle/identification/evidence/drive_evidence.hpp"
+#include "veridyn/vehicle/identification/fit/estimated_drive_model.hpp"
+#include "veridyn/vehicle/identification/validation/vehicle_prediction.hpp"
 #include "veridyn/vehicle/model/vehicle.hpp"
 
 namespace veridyn::vehicle {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "tests/aircraft/campaign/campaign.hpp"
-#include "veridyn/aircraft/identification/open_loop.hpp"
+#include "veridyn/aircraft/identification/validation/open_loop.hpp"
 
 namespace veridyn::aircraft {
 namespace {

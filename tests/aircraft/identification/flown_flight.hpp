@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "veridyn/aircraft/identification/prepared_flight.hpp"
+#include "veridyn/aircraft/identification/rows/prepared_flight.hpp"
+#include "veridyn/aircraft/model/builtin_subjects.hpp"
 #include "veridyn/aircraft/model/flight_dynamics.hpp"
 #include "veridyn/aircraft/model/trim.hpp"
 #include "veridyn/numerics/ode.hpp"

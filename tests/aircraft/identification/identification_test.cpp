@@ -17,21 +17,6 @@ using estimation::Outcome;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-TEST(Identification, SaysHowMuchLargerTheResidualIsThanTheSensorsLeave) {
-  EXPECT_THAT(unmodelled_text(9.0, 0.25), HasSubstr("25 % of its variance"));
-  EXPECT_THAT(unmodelled_text(9.0, 0.25), HasSubstr("residual 3.0 times"));
-}
-
-// Where the errors of the regressors leave no signal, the ratio is unknown or, as a difference of variances, negative:
-// this used to print "residual -nan times".
-TEST(Identification, PrintsNoRatioWhereTheRegressorsLeaveNoSignal) {
-  for (const double ratio : {kNaN, -0.4, 0.0}) {
-    const std::string text = unmodelled_text(ratio, ratio == ratio ? 1.2 : kNaN);
-    EXPECT_THAT(text, Not(HasSubstr("nan"))) << ratio;
-    EXPECT_THAT(text, HasSubstr("leave no signal")) << ratio;
-  }
-}
-
 CoefficientResult cm_of(const PitchingFlight& flight) {
   const Subject subject = builtin_subject("thor");
   return aircraft::testing::identified_cm(subject, aircraft::testing::pitching(subject, flight));
@@ -101,13 +86,6 @@ TEST(IdentificationRows, FindAnElevatorThatMovesWithAlpha) {
   EXPECT_THAT(collinearity(0.02).text, HasSubstr("Cm_alpha, Cm_de"));
   EXPECT_EQ(collinearity(0.0).outcome, Outcome::kPassed);
   EXPECT_THAT(collinearity(0.0).text, HasSubstr("no larger than sensor noise"));
-}
-
-TEST(Identification, AxisOfACoefficientIsWhatItsMotionIs) {
-  for (const Coefficient c : {Coefficient::kCL, Coefficient::kCD, Coefficient::kCm})
-    EXPECT_EQ(axis_of(c), Axis::kLongitudinal);
-  for (const Coefficient c : {Coefficient::kCY, Coefficient::kCl, Coefficient::kCn})
-    EXPECT_EQ(axis_of(c), Axis::kLateral);
 }
 
 }  // namespace

@@ -1,3 +1,5 @@
+#include "veridyn/aircraft/identification/identified_estimate.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>

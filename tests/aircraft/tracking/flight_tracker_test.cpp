@@ -7,6 +7,7 @@
 
 #include "tests/aircraft/pitching_flight.hpp"
 #include "tests/support/refusal.hpp"
+#include "veridyn/aircraft/identification/identified_estimate.hpp"
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
 
 namespace veridyn::aircraft {

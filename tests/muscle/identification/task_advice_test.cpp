@@ -11,7 +11,7 @@
 #include <stdexcept>
 
 #include "veridyn/core/error.hpp"
-#include "veridyn/muscle/identify_muscles.hpp"
+#include "veridyn/muscle/study/identify_muscles.hpp"
 
 namespace veridyn::muscle {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "veridyn/core/error.hpp"
-#include "veridyn/muscle/identify_muscles.hpp"
+#include "veridyn/muscle/study/identify_muscles.hpp"
 
 namespace veridyn::muscle {
 namespace {

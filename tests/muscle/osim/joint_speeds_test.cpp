@@ -11,8 +11,8 @@
 #include "tests/muscle/muscle_studies.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/constants.hpp"
-#include "veridyn/muscle/muscle_run.hpp"
 #include "veridyn/muscle/osim/osim_reader.hpp"
+#include "veridyn/muscle/study/muscle_run.hpp"
 
 // That these are Simbody's speeds is a test of every kind of joint in tests/muscle/dynamics/simbody_test.cpp.
 namespace veridyn::muscle {

@@ -229,5 +229,20 @@ TEST(VehicleIdentification, AnInterruptedSearchThatHadNotConvergedGivesNoPhysica
   for (const Parameter& p : id.best()->parameters) EXPECT_NE(p.status, ParameterStatus::kIdentified) << p.name;
 }
 
+TEST(VehicleIdentification, HasItsProfiledParametersInTheOrderOfTheModel) {
+  VehicleIdentification id;
+  EXPECT_TRUE(profiled_parameters(id).empty());
+  id.output_error.emplace();
+  id.output_error->parameters = {{.name = "C_f", .value = 1.0}, {.name = "C_r", .value = 2.0}};
+  VehicleEstimate shown;
+  shown.method = VehicleMethod::kOutputError;
+  shown.parameters = {{.name = "C_r", .value = 2.0, .sigma = 0.5}};
+  id.estimates.push_back(shown);
+  const std::vector<estimation::Parameter> all = profiled_parameters(id);
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0].name, "C_f");
+  EXPECT_EQ(all[1].sigma, 0.5);
+}
+
 }  // namespace
 }  // namespace veridyn::vehicle

@@ -6,14 +6,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "veridyn/aircraft/identification/body_error.hpp"
-#include "veridyn/aircraft/identification/chosen_output_error.hpp"
-#include "veridyn/aircraft/identification/coefficient_description.hpp"
-#include "veridyn/aircraft/identification/coefficient_evidence.hpp"
-#include "veridyn/aircraft/identification/coefficient_fit.hpp"
-#include "veridyn/aircraft/identification/error_variance.hpp"
-#include "veridyn/aircraft/identification/flight_rows.hpp"
-#include "veridyn/aircraft/identification/sensor_doubt.hpp"
+#include "veridyn/aircraft/identification/evidence/coefficient_evidence.hpp"
+#include "veridyn/aircraft/identification/evidence/sensor_doubt.hpp"
+#include "veridyn/aircraft/identification/fit/body_error.hpp"
+#include "veridyn/aircraft/identification/fit/coefficient_description.hpp"
+#include "veridyn/aircraft/identification/fit/coefficient_fit.hpp"
+#include "veridyn/aircraft/identification/fit/error_variance.hpp"
+#include "veridyn/aircraft/identification/output_error/chosen_output_error.hpp"
+#include "veridyn/aircraft/identification/rows/coefficient_rows.hpp"
+#include "veridyn/aircraft/identification/rows/flight_rows.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/judgement/agreement.hpp"
 #include "veridyn/numerics/parallel.hpp"
@@ -278,17 +279,6 @@ ChosenOutputError fly_axes(std::span<const FittedCoefficient> fitted, const Flig
 
 }  // namespace
 
-std::string unmodelled_text(double error_ratio, double unmodelled_share) {
-  const double times = std::sqrt(std::max(0.0, error_ratio));
-  if (!(error_ratio > 0.0) || !std::isfinite(times) || !std::isfinite(unmodelled_share)) {
-    return "the errors of its regressors leave no signal to judge by how much of its residual is noise of the sensors";
-  }
-  return fmt::format(
-      "{:.0f} % of its variance is neither modelled nor sensor noise (residual {:.1f} times what the sensors leave), "
-      "so something that moves the aircraft is not among the regressors and biases them",
-      100.0 * unmodelled_share, times);
-}
-
 Identification identify_coefficients(std::span<const PreparedFlight> flights, const Subject& subject,
                                      const IdentifyOptions& options, Progress& progress) {
   const FlightView flight{flights, subject, options};
@@ -319,6 +309,29 @@ Identification identify_coefficients(std::span<const PreparedFlight> flights, co
   if (!numerics::parallel_for(models.size(), progress.threads(), judge, judging)) return {};
   if (flown) found.output_error = std::move(flown->identification);
   return found;
+}
+
+std::vector<CoefficientResult> not_identified(const Subject& subject, const IdentifyOptions& options,
+                                              const Contradiction& contradiction,
+                                              std::span<const FlightEvidence> evidence) {
+  std::vector<CoefficientResult> results;
+  for (const Coefficient coefficient : enumerators<Coefficient, kCoefficients>()) {
+    const CoefficientModel* model = subject.model.find(coefficient);
+    const auto& some = options.coefficients;
+    if (model == nullptr || (!some.empty() && std::ranges::find(some, coefficient) == some.end())) continue;
+    CoefficientResult result;
+    result.coefficient = coefficient;
+    result.name = std::string(name_of(coefficient));
+    result.axis = axis_of(coefficient);
+    result.model = *model;
+    result.reason = fmt::format("{} is not identified: the motion is not known, {} contradicts {}", result.name,
+                                contradiction.channel, contradiction.against);
+    for (const FlightEvidence& row : evidence)
+      if (row.bears_on(coefficient)) result.evidence.push_back(row.row);
+    result.judgement = estimation::judge(result.evidence);
+    results.push_back(std::move(result));
+  }
+  return results;
 }
 
 }  // namespace veridyn::aircraft

@@ -1,11 +1,12 @@
+#include "veridyn/aircraft/identification/identified_estimate.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <utility>
 
-#include "veridyn/aircraft/identification/identification.hpp"
-#include "veridyn/aircraft/identification/measured_coefficients.hpp"
+#include "veridyn/aircraft/identification/signals/measured_coefficients.hpp"
 #include "veridyn/core/constants.hpp"
 
 namespace veridyn::aircraft {

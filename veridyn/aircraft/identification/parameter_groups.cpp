@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "veridyn/aircraft/identification/measured_coefficients.hpp"
+#include "veridyn/aircraft/identification/signals/measured_coefficients.hpp"
 #include "veridyn/core/constants.hpp"
 
 namespace veridyn::aircraft {

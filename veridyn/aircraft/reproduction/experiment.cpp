@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "veridyn/aircraft/identification/measured_coefficients.hpp"
+#include "veridyn/aircraft/identification/signals/measured_coefficients.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/core/nearest.hpp"

@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "veridyn/aircraft/identification/coefficient_rows.hpp"
-#include "veridyn/aircraft/identification/identification.hpp"
+#include "veridyn/aircraft/identification/rows/coefficient_rows.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 

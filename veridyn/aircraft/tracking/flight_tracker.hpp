@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "veridyn/aircraft/identification/flight_signals.hpp"
+#include "veridyn/aircraft/identification/signals/flight_signals.hpp"
 #include "veridyn/aircraft/tracking/coefficient_tracker.hpp"
 #include "veridyn/estimation/estimate.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "veridyn/aircraft/identification/coefficient_evidence.hpp"
+#include "veridyn/aircraft/identification/evidence/coefficient_evidence.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/estimation/recursive/tracking_evidence.hpp"

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "veridyn/aircraft/identification/flight_evidence.hpp"
+#include "veridyn/aircraft/identification/evidence/flight_evidence.hpp"
 #include "veridyn/aircraft/tracking/flight_tracker.hpp"
 
 namespace veridyn::aircraft {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "veridyn/muscle/muscle_run.hpp"
+#include "veridyn/muscle/study/muscle_run.hpp"
 #include "veridyn/report/document/document.hpp"
 
 namespace veridyn::report {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "veridyn/aircraft/identification/flight_rows.hpp"
+#include "veridyn/aircraft/identification/rows/flight_rows.hpp"
 #include "veridyn/report/figures/aircraft_figures.hpp"
 #include "veridyn/report/parts/aircraft_estimates.hpp"
 #include "veridyn/report/parts/analysis_sections.hpp"

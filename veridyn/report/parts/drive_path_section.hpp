@@ -1,7 +1,7 @@
 #pragma once
 
 #include "veridyn/report/document/document.hpp"
-#include "veridyn/vehicle/identification/drive_path.hpp"
+#include "veridyn/vehicle/identification/signals/drive_path.hpp"
 
 namespace veridyn::report {
 

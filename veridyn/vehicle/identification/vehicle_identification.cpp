@@ -6,14 +6,14 @@
 #include <cmath>
 
 #include "veridyn/core/finishing_progress.hpp"
-#include "veridyn/vehicle/identification/estimated_vehicle.hpp"
-#include "veridyn/vehicle/identification/structure_doubt.hpp"
-#include "veridyn/vehicle/identification/structure_ladder.hpp"
-#include "veridyn/vehicle/identification/vehicle_estimates.hpp"
-#include "veridyn/vehicle/identification/vehicle_judgement.hpp"
-#include "veridyn/vehicle/identification/vehicle_plausibility.hpp"
-#include "veridyn/vehicle/identification/vehicle_prediction.hpp"
-#include "veridyn/vehicle/identification/vehicle_profiles.hpp"
+#include "veridyn/vehicle/identification/evidence/vehicle_judgement.hpp"
+#include "veridyn/vehicle/identification/evidence/vehicle_plausibility.hpp"
+#include "veridyn/vehicle/identification/fit/estimated_vehicle.hpp"
+#include "veridyn/vehicle/identification/fit/vehicle_estimates.hpp"
+#include "veridyn/vehicle/identification/fit/vehicle_profiles.hpp"
+#include "veridyn/vehicle/identification/structure/structure_doubt.hpp"
+#include "veridyn/vehicle/identification/structure/structure_ladder.hpp"
+#include "veridyn/vehicle/identification/validation/vehicle_prediction.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -157,10 +157,6 @@ VehicleIdentification identify_parameters(const VehicleProblem& problem, Progres
   return out;
 }
 
-const Parameter* VehicleEstimate::find(std::string_view name) const {
-  return estimation::find_parameter(parameters, name);
-}
-
 const VehicleEstimate* VehicleIdentification::find(VehicleMethod method) const {
   return find_estimate(estimates, method);
 }
@@ -253,6 +249,16 @@ estimation::ParameterGroup parameter_group(const VehicleIdentification& identifi
     group.method = to_string(best->method);
   }
   return group;
+}
+
+std::vector<estimation::Parameter> profiled_parameters(const VehicleIdentification& identification) {
+  if (!identification.output_error) return {};
+  std::vector<estimation::Parameter> parameters = identification.output_error->parameters;
+  const VehicleEstimate* shown = identification.find(VehicleMethod::kOutputError);
+  for (estimation::Parameter& p : parameters) {
+    if (const estimation::Parameter* estimate = shown != nullptr ? shown->find(p.name) : nullptr) p = *estimate;
+  }
+  return parameters;
 }
 
 }  // namespace veridyn::vehicle

@@ -13,8 +13,8 @@
 #include "veridyn/estimation/analysis.hpp"
 #include "veridyn/estimation/recursive/tracking_evidence.hpp"
 #include "veridyn/numerics/statistics.hpp"
+#include "veridyn/vehicle/identification/evidence/vehicle_plausibility.hpp"
 #include "veridyn/vehicle/identification/vehicle_identification.hpp"
-#include "veridyn/vehicle/identification/vehicle_plausibility.hpp"
 
 namespace veridyn::vehicle {
 namespace {

@@ -11,8 +11,8 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/numerics/linear_algebra/cholesky.hpp"
-#include "veridyn/vehicle/identification/estimated_drive_model.hpp"
-#include "veridyn/vehicle/identification/estimated_vehicle.hpp"
+#include "veridyn/vehicle/identification/fit/estimated_drive_model.hpp"
+#include "veridyn/vehicle/identification/fit/estimated_vehicle.hpp"
 
 namespace veridyn::vehicle {
 namespace {

@@ -1,0 +1,319 @@
+#include "veridyn/vehicle/identification/fit/drive_parametric_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "tests/vehicle/simulated_drive.hpp"
+#include "veridyn/core/index.hpp"
+
+namespace veridyn::vehicle {
+namespace {
+
+using testing::family_car;
+using testing::lively_drive;
+using testing::mapped;
+
+constexpr auto index_of(DriveUnknown u) { return static_cast<Eigen::Index>(u); }
+
+/// A drive of 12 s with the lateral velocity, and a body of which roll and its rate are recorded: what they are does
+/// not matter to the model's outputs.
+DriveSignals rolling_signals(const DriveSensorSet& like) {
+  DriveSensorSet sensors = like;
+  sensors[DriveSensorKind::kLateralVelocity].enabled = true;
+  DriveSignals signals =
+      prepare_drive_signals(mapped(record_drive(lively_drive(family_car(), 1, 0.02, 12.0), sensors, 1)), {});
+  signals.accel_position = {0.3, -0.2, 0.1};
+  for (const DriveSignal s : {DriveSignal::kRoll, DriveSignal::kRollRate}) {
+    signals[s].value = signals[DriveSignal::kYawRate].value;
+    signals[s].sigma = 0.003;
+  }
+  return signals;
+}
+
+/// Where a search begins, but off it where that is zero, and off steady cornering.
+Eigen::VectorXd theta_of(const DriveParametricModel& model, std::size_t segment = 0) {
+  const auto initial = model.initial_conditions(segment);
+  Eigen::VectorXd theta(kDriveUnknowns + initial.size());
+  for (std::size_t i = 0; i < kDriveUnknowns; ++i) theta(i) = model.parameters()[i].start;
+  for (std::size_t i = 0; i < initial.size(); ++i)
+    theta(kDriveUnknowns + i) = initial[i].start + (i < 2 ? 0.0 : 0.004 * static_cast<double>(i));
+  return theta;
+}
+
+estimation::RowMatrix output_of(const DriveParametricModel& model, const Eigen::VectorXd& theta) {
+  estimation::ModelResponse response;
+  EXPECT_TRUE(model.respond(0, theta, {}, response));
+  return response.output;
+}
+
+void expect_derivatives(const DriveParametricModel& model, const Eigen::VectorXd& theta,
+                        const std::vector<Eigen::Index>& active, const std::string& what) {
+  estimation::ModelResponse exact;
+  ASSERT_TRUE(model.respond(0, theta, active, exact));
+  const Eigen::VectorXd size = theta.cwiseAbs().cwiseMax(0.01);
+  for (std::size_t column = 0; column < active.size(); ++column) {
+    const Eigen::Index i = active[column];
+    const double h = 1e-5 * size(i);
+    Eigen::VectorXd moved = theta;
+    moved(i) += h;
+    const estimation::RowMatrix above = output_of(model, moved);
+    moved(i) -= 2.0 * h;
+    const estimation::RowMatrix difference = (above - output_of(model, moved)) / (2.0 * h);
+    const Eigen::Map<const Eigen::VectorXd> flat(difference.data(), difference.size());
+    const double scale = std::max(flat.cwiseAbs().maxCoeff(), 1e-6 / size(i));
+    EXPECT_LT((flat - exact.sensitivity.col(column)).cwiseAbs().maxCoeff() / scale, 2e-5)
+        << "unknown " << i << ", " << what;
+  }
+}
+
+TEST(DriveParametricModel, SensitivitiesAreThoseOfFiniteDifferences) {
+  const DriveSignals signals = rolling_signals(testing::perfect_sensors());
+  for (const DriveTyre tyre : {DriveTyre::kLinear, DriveTyre::kMagicFormula}) {
+    for (const DriveStructure structure :
+         {DriveStructure::kBicycle, DriveStructure::kRoll, DriveStructure::kRelaxation}) {
+      DriveModelOptions options;
+      options.tyre = tyre;
+      options.structure = structure;
+      options.free.fill(true);
+      options.start[DriveUnknown::kYawRateDelay] = 0.013;
+      options.start[DriveUnknown::kSteerDelay] = 0.017;
+      // At no delay the ends, where nothing lies beyond, have one-sided derivatives.
+      options.start[DriveUnknown::kAccelYDelay] = 0.009;
+      const std::vector<TimeSpan> spans{{4.0, 8.0}};
+      const DriveParametricModel model(signals, spans, family_car(), options);
+      const Eigen::VectorXd theta = theta_of(model);
+      ASSERT_EQ(theta.size(), signed_index(kDriveUnknowns) + (structure == DriveStructure::kBicycle ? 2
+                                                              : has_relaxation(structure)           ? 6
+                                                                                                    : 4));
+      std::vector<Eigen::Index> active(static_cast<std::size_t>(theta.size()));
+      std::iota(active.begin(), active.end(), Eigen::Index{0});
+      expect_derivatives(model, theta, active,
+                         std::string(to_string(structure)) + ", tyre " + std::to_string(static_cast<int>(tyre)));
+    }
+  }
+}
+
+/// The model of a structure on noisy signals, with the filter at its start; outputs are not delayed.
+struct Whitened {
+  DriveParametricModel plain, white;
+  DriveWhitening filter;
+  Eigen::VectorXd theta;
+};
+
+Whitened whitened(const DriveSignals& signals, DriveStructure structure) {
+  const DriveModelOptions options = with_structure({}, structure);
+  const std::vector<TimeSpan> spans{{4.0, 8.0}};
+  DriveParametricModel plain(signals, spans, family_car(), options);
+  const Eigen::VectorXd theta = theta_of(plain);
+  DriveWhitening filter = plain.whitening(theta);
+  DriveParametricModel white = plain.weighed(filter);
+  return {std::move(plain), std::move(white), std::move(filter), theta};
+}
+
+// The filter is the same whatever the parameters are.
+TEST(DriveParametricModel, SensitivitiesOfWhitenedOutputsAreThoseOfFiniteDifferences) {
+  const DriveSignals signals = rolling_signals(reference_drive_sensors());
+  for (const DriveStructure structure :
+       {DriveStructure::kBicycle, DriveStructure::kRoll, DriveStructure::kRelaxation}) {
+    const Whitened model = whitened(signals, structure);
+    ASSERT_FALSE(model.filter.empty());
+    std::vector<Eigen::Index> active;
+    for (Eigen::Index i = 0; i < model.theta.size(); ++i)  // outputs of which no delay is free are not delayed
+      if (i != index_of(DriveUnknown::kYawRateDelay) && i != index_of(DriveUnknown::kAccelYDelay)) active.push_back(i);
+    expect_derivatives(model.white, model.theta, active, std::string(to_string(structure)));
+  }
+}
+
+// What a model measures of itself leaves no residual, with the filter as without.
+TEST(DriveParametricModel, WhiteningLeavesTheModelsOwnOutputsWhatIsMeasured) {
+  for (const DriveStructure structure :
+       {DriveStructure::kBicycle, DriveStructure::kRoll, DriveStructure::kRelaxation}) {
+    DriveSignals signals = rolling_signals(reference_drive_sensors());
+    const Whitened noisy = whitened(signals, structure);
+    ASSERT_FALSE(noisy.filter.empty());
+    const estimation::RowMatrix own = output_of(noisy.plain, noisy.theta);
+    const std::size_t first = noisy.plain.first_sample(0);
+    for (const DriveSignal signal : enumerators<DriveSignal, kDriveSignals>()) {
+      for (std::size_t j = 0; j < noisy.plain.outputs().size(); ++j) {
+        if (noisy.plain.outputs()[j].name != kDriveSignalNames[signal]) continue;
+        for (Eigen::Index k = 0; k < own.rows(); ++k) signals[signal].value[first + k] = own(k, j);
+      }
+    }
+    const std::vector<TimeSpan> spans{{4.0, 8.0}};
+    const DriveParametricModel model =
+        DriveParametricModel(signals, spans, family_car(), with_structure({}, structure)).weighed(noisy.filter);
+    const estimation::RowMatrix measured = model.measured()[0];
+    const estimation::RowMatrix predicted = output_of(model, noisy.theta);
+    EXPECT_LT((measured - predicted).cwiseAbs().maxCoeff(), 1e-12) << to_string(structure);
+    EXPECT_GT((predicted - own).norm(), 0.1 * own.norm()) << to_string(structure);  // the filter does something
+  }
+}
+
+// The equations of `DriveWhitening` on the residual itself: the filtered difference is the difference of the filtered.
+// A sample that was not measured corrects nothing and leaves no other without a value.
+TEST(DriveParametricModel, WhiteningIsLinear) {
+  DriveSignals signals = rolling_signals(reference_drive_sensors());
+  const std::size_t first = whitened(signals, DriveStructure::kRoll).plain.first_sample(0);
+  for (std::size_t k = 100; k < 120; ++k) signals[DriveSignal::kAccelY].value[first + k] = kNaN;
+  const Whitened model = whitened(signals, DriveStructure::kRoll);
+  const estimation::RowMatrix residual = model.plain.measured()[0] - output_of(model.plain, model.theta);
+  const estimation::RowMatrix white = model.white.measured()[0] - output_of(model.white, model.theta);
+  Eigen::VectorXd state = Eigen::VectorXd::Zero(model.filter.filter[0].transition.rows());
+  int missing = 0;
+  for (Eigen::Index k = 0; k < residual.rows(); ++k) {
+    DriveWhitening::Filter f;
+    model.filter.at(signals[DriveSignal::kSpeed].value[first + k], f);
+    Eigen::VectorXd expected = residual.row(k).transpose() - f.output * state;
+    for (Eigen::Index j = 0; j < expected.size(); ++j) {
+      if (std::isnan(expected(j))) {
+        EXPECT_TRUE(std::isnan(white(k, j)));
+        expected(j) = 0.0;
+        ++missing;
+      } else {
+        EXPECT_NEAR(white(k, j), expected(j), 1e-12) << k << " " << j;
+      }
+    }
+    state = f.transition * state + f.gain * expected;
+  }
+  EXPECT_EQ(missing, 20);
+}
+
+/// Correlation of successive values.
+double lag1(const Eigen::VectorXd& x) {
+  const Eigen::Index n = x.size();
+  return x.head(n - 1).dot(x.tail(n - 1)) / x.squaredNorm();
+}
+
+// At the truth what is left of a drive is the noise of its sensors and what that of the steering moved, which comes
+// slowly: correlations of 0.7 and 0.9 from one sample to the next. The filter takes the noise that the low-pass leaves
+// for that of two poles; what it is not takes a tenth back in accel_y, which answers the steering at once.
+TEST(DriveParametricModel, WhiteningTakesTheColourOfTheSteeringsNoiseOut) {
+  DriveSensorSet sensors = reference_drive_sensors();
+  for (DriveSensor& sensor : sensors.sensors) sensor.bias_sigma = 0.0;
+  sensors[DriveSensorKind::kSteer].sigma *= 3.0;
+  const DriveSignals signals =
+      prepare_drive_signals(mapped(record_drive(lively_drive(family_car(), 1, 0.02, 44.0), sensors, 1)), {});
+  const std::vector<TimeSpan> spans{{4.0, 40.0}};
+  const DriveParametricModel plain(signals, spans, family_car(), {});
+  const Eigen::VectorXd theta = theta_of(plain);
+  const DriveParametricModel white = plain.weighed(plain.whitening(theta));
+  const auto residual = [&](const DriveParametricModel& model) {
+    const estimation::RowMatrix all = model.measured()[0] - output_of(model, theta);
+    return Eigen::MatrixXd(all.bottomRows(all.rows() - 200));  // without the transient of where it begins
+  };
+  const Eigen::MatrixXd before = residual(plain), after = residual(white);
+  for (Eigen::Index j = 0; j < after.cols(); ++j) {
+    EXPECT_GT(lag1(before.col(j)), 0.6) << plain.outputs()[j].name;
+    EXPECT_LT(std::abs(lag1(after.col(j))), 0.13) << plain.outputs()[j].name;
+    EXPECT_LT(after.col(j).norm(), 0.65 * before.col(j).norm()) << plain.outputs()[j].name;
+  }
+}
+
+TEST(DriveParametricModel, HasNoFilterWhereTheResidualIsWhiteOrDelayed) {
+  const std::vector<TimeSpan> spans{{4.0, 8.0}};
+  const auto filter = [&](const DriveSignals& signals, const DriveModelOptions& options) {
+    const DriveParametricModel model(signals, spans, family_car(), options);
+    return model.whitening(theta_of(model));
+  };
+  const DriveSignals noisy = rolling_signals(reference_drive_sensors());
+  EXPECT_FALSE(filter(noisy, {}).empty());
+  DriveModelOptions delayed;
+  delayed.free[DriveUnknown::kYawRateDelay] = true;
+  EXPECT_TRUE(filter(noisy, delayed).empty());
+  DriveModelOptions smoothed;
+  smoothed.smoothing_Hz = 4.0;
+  EXPECT_TRUE(filter(noisy, smoothed).empty());
+  DriveSignals exact_steering = noisy;
+  exact_steering[DriveSignal::kSteer].sigma = 0.0;
+  EXPECT_TRUE(filter(exact_steering, {}).empty());
+}
+
+// An accelerometer on a body that leans by phi shows g phi more; with gravity taken off by a measured roll it does not,
+// and one that was divided by 1 + g gradient shows that share of it.
+TEST(DriveParametricModel, AccelerometersOfLeaningBodiesFeelGravity) {
+  DriveSignals signals = rolling_signals(testing::perfect_sensors());
+  const auto outputs = [&](bool gravity_removed, double gradient) {
+    signals.gravity_removed = gravity_removed;
+    signals.roll_gradient = gradient;
+    const std::vector<TimeSpan> spans{{4.0, 8.0}};
+    DriveModelOptions options = with_structure({}, DriveStructure::kRoll);
+    options.start[DriveUnknown::kRollGradient] = 0.008;
+    const DriveParametricModel model(signals, spans, family_car(), options);
+    EXPECT_EQ(model.outputs()[1].name, "accel_y");
+    EXPECT_EQ(model.outputs()[3].name, "roll");
+    return output_of(model, theta_of(model));
+  };
+  const estimation::RowMatrix felt = outputs(false, 0.0), removed = outputs(true, 0.0), divided = outputs(true, 0.01);
+  const Eigen::VectorXd roll = felt.col(3);
+  ASSERT_GT(roll.cwiseAbs().maxCoeff(), 0.01);
+  EXPECT_LT((felt.col(1) - removed.col(1) - kGravity * roll).cwiseAbs().maxCoeff(), 1e-13);
+  EXPECT_LT((divided.col(1) * (1.0 + 0.01 * kGravity) - felt.col(1)).cwiseAbs().maxCoeff(), 1e-13);
+}
+
+// At x, y, z of the centre of gravity a body that turns and rolls moves by x r' - y r^2 - z phi'' more. Rates from
+// differences of the model's own outputs over 20 ms: of motions below 2 Hz they are right to (2 pi 2 Hz 10 ms)^2/6.
+TEST(DriveParametricModel, AccelerometersElsewhereMoveWithTheBody) {
+  DriveSignals signals = rolling_signals(testing::perfect_sensors());
+  const auto outputs = [&](const std::array<double, 3>& position) {
+    signals.accel_position = position;
+    signals.gravity_removed = true;
+    const std::vector<TimeSpan> spans{{4.0, 8.0}};
+    const DriveParametricModel model(signals, spans, family_car(), with_structure({}, DriveStructure::kRoll));
+    EXPECT_EQ(model.outputs()[4].name, "roll_rate");
+    return output_of(model, theta_of(model));
+  };
+  const estimation::RowMatrix at_centre = outputs({});
+  const auto moved = [&](const std::array<double, 3>& position) -> Eigen::VectorXd {
+    return (outputs(position) - at_centre).col(1);
+  };
+  const Eigen::Index inner = at_centre.rows() - 2;
+  const auto rate = [&](Eigen::Index column) -> Eigen::VectorXd {
+    return (at_centre.col(column).tail(inner) - at_centre.col(column).head(inner)) * (0.5 * signals.grid.rate_Hz());
+  };
+  const auto expect_equal = [&](const Eigen::VectorXd& found, const Eigen::VectorXd& expected, const char* what) {
+    EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 5e-3 * expected.cwiseAbs().maxCoeff()) << what;
+  };
+  expect_equal(moved({0.4, 0.0, 0.0}).segment(1, inner), 0.4 * rate(0), "ahead");
+  expect_equal(moved({0.0, 0.4, 0.0}).segment(1, inner), -0.4 * at_centre.col(0).segment(1, inner).cwiseAbs2(), "left");
+  expect_equal(moved({0.0, 0.0, 0.4}).segment(1, inner), -0.4 * rate(4), "above");
+}
+
+// The unknowns of a segment's beginning are what its first sample differs from steady cornering by.
+TEST(DriveParametricModel, SegmentsBeginOffSteadyCorneringByTheirInitialConditions) {
+  const DriveSignals signals = rolling_signals(testing::perfect_sensors());
+  const std::vector<TimeSpan> spans{{4.0, 8.0}};
+  DriveModelOptions options = with_structure({}, DriveStructure::kRelaxation);
+  options.start[DriveUnknown::kRollGradient] = 0.008;
+  const DriveParametricModel model(signals, spans, family_car(), options);
+  ASSERT_EQ(model.initial_conditions(0).size(), 6U);
+  Eigen::VectorXd theta = theta_of(model);
+  const auto first = signed_index(kDriveUnknowns);
+  theta.tail(4).setZero();
+  const Eigen::RowVectorXd steady = output_of(model, theta).row(0);
+  EXPECT_EQ(steady(0), theta(first + 1));
+  EXPECT_EQ(steady(2), theta(first));
+  EXPECT_EQ(steady(4), 0.0);
+  theta.segment(first + 2, 2) << 0.012, -0.034;
+  const Eigen::RowVectorXd rolled = output_of(model, theta).row(0);
+  EXPECT_NEAR(rolled(3) - steady(3), 0.012, 1e-15);
+  EXPECT_EQ(rolled(4), -0.034);
+  // A front slip of 0.01 rad more is 2 C_f 0.01/m of lateral acceleration; the wheels are hardly turned.
+  theta.tail(4) << 0.0, 0.0, 0.01, 0.0;
+  const Eigen::RowVectorXd slipped = output_of(model, theta).row(0);
+  const VehicleParameters<double> car = family_car();
+  const double x = signals.accel_position[0], z = signals.accel_position[2];
+  const double force = 2.0 * 0.01 * car.C_f;
+  const DriveModelOptions with_starts = with_geometry(options, car, 0.0);
+  const double roll_acceleration = std::pow(with_starts.start[DriveUnknown::kRollFrequency], 2) * 0.008 / car.mass;
+  const double per_force = 1.0 / car.mass + x * car.a / car.I_z - z * roll_acceleration;
+  EXPECT_NEAR(slipped(1) - steady(1), force * per_force, 2e-3 * force * per_force);
+}
+
+}  // namespace
+}  // namespace veridyn::vehicle

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "veridyn/aircraft/identification/evidence/flight_evidence.hpp"
+#include "veridyn/aircraft/identification/signals/segments.hpp"
+#include "veridyn/aircraft/reconstruction/reconstruct.hpp"
+#include "veridyn/aircraft/sensors/delays.hpp"
+
+namespace veridyn::aircraft {
+
+/// Does the recording of a flight agree with itself and with physics? Samples, inertial sensors against velocity and
+/// attitude, clocks, air data against ground velocity and against gyro and accelerometer, ranges of deflections,
+/// sensors against the reconstruction, gusts against their model.
+/// @param delays   what the alignment of the clocks found
+/// @param threads  0: as many as the machine has
+[[nodiscard]] std::vector<FlightEvidence> recording_evidence(const Recording& recording,
+                                                             const Reconstruction& reconstruction,
+                                                             const ReconstructOptions& options,
+                                                             const Segments& segments,
+                                                             std::span<const DelayReport> delays = {}, int threads = 0);
+
+}  // namespace veridyn::aircraft

@@ -1,0 +1,88 @@
+#include "veridyn/muscle/study/muscle_study_unknowns.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+
+namespace veridyn::muscle {
+namespace {
+
+bool in_percent(const StudyTable& table, std::string_view key) {
+  return table.is_text(key) && table.text(key).find('%') != std::string::npos;
+}
+
+Extent extent(const StudyTable& table, std::string_view key, std::string_view unit) {
+  if (in_percent(table, key)) return {100.0 * table.number(key, "1"), true};
+  return {table.number(key, unit), false};
+}
+
+MuscleUnknown read_unknown(const StudyTable& table, const Model& model) {
+  MuscleUnknownSpec spec;
+  spec.name = table.text_or("name", "");
+  spec.muscles = table.texts("muscles");
+  spec.fields = table.texts("fields");
+  spec.factor = table.flag_or("factor", false);
+  spec.fixed = table.flag_or("fixed", false);
+  // Names first, and the unit that the numbers below are in.
+  std::string unit = "1";
+  if (!spec.factor) {
+    for (std::size_t f = 0; f < MuscleParameterName::kCount && !spec.fields.empty(); ++f) {
+      if (spec.fields.front() == parameter_field(f).name) unit = parameter_field(f).unit;
+    }
+  }
+  std::string place = table.place("fields");
+  if (table.has("start")) {
+    spec.start = table.number("start", unit);
+    place = table.place("start");
+  }
+  static_cast<void>(make_unknown(model, spec, place));
+  if (table.has("bounds")) {
+    place = table.place("bounds");
+    for (const char* key : {"low", "high"}) {
+      if (table.has(key)) table.fail(key, "and bounds are both given; one of them has to go");
+    }
+    const double percent = in_percent(table, "bounds") ? 100.0 * table.number("bounds", "1") : -1.0;
+    if (!(percent > 0.0))
+      table.fail("bounds", "must be a share of the start such as \"20 %\"; low and high take units");
+    spec.low = Extent{-percent, true};
+    spec.high = Extent{percent, true};
+  }
+  for (const char* key : {"low", "high"}) {
+    if (!table.has(key)) continue;
+    place = table.place(key);
+    (std::string_view(key) == "low" ? spec.low : spec.high) = extent(table, key, unit);
+  }
+  static_cast<void>(make_unknown(model, spec, place));
+  if (table.has("prior")) {
+    place = table.place("prior");
+    spec.prior = extent(table, "prior", unit);
+  }
+  return make_unknown(model, spec, place);
+}
+
+}  // namespace
+
+std::vector<MuscleUnknown> read_unknowns(const StudyTable& root, const Model& model) {
+  std::vector<MuscleUnknown> unknowns;
+  for (const StudyTable& table : root.tables("parameter")) {
+    unknowns.push_back(read_unknown(table, model));
+    check_unknowns(model, unknowns, table.place("fields"));
+  }
+  return unknowns;
+}
+
+std::vector<MuscleOutput> read_outputs(const StudyTable& root, const Model& model) {
+  std::vector<MuscleOutput> outputs;
+  for (const StudyTable& table : root.tables("output")) {
+    MuscleOutput output = parse_output(model, table.text("name"), table.place("name"));
+    if (table.has("noise")) output.noise_sd = table.positive("noise", output_unit(model, output));
+    for (const MuscleOutput& other : outputs) {
+      if (other.kind == output.kind && other.index == output.index)
+        table.fail("name", fmt::format("names '{}' a second time", output_name(model, output)));
+    }
+    outputs.push_back(output);
+  }
+  return outputs;
+}
+
+}  // namespace veridyn::muscle

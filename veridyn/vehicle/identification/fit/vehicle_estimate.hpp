@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "veridyn/estimation/parameter.hpp"
+#include "veridyn/vehicle/identification/options/vehicle_method.hpp"
+#include "veridyn/vehicle/model/vehicle_parameters.hpp"
+
+namespace veridyn::vehicle {
+
+/// The vehicle's parameters by one method.
+struct VehicleEstimate {
+  VehicleMethod method = VehicleMethod::kNone;
+  bool usable = false;
+  std::string message;
+  /// C_f, C_r, I_z [, mu, ...], understeer_gradient [rad/(m/s^2)], nuisances: sensors' biases; of
+  /// equation error `steer_offset`, what the biases of steering, gyro and accelerometer add up to as a steer angle.
+  std::vector<estimation::Parameter> parameters;
+  Eigen::MatrixXd covariance;  ///< in their order
+  /// The part of it that comes from what is not known of mass, a and b; empty: none.
+  Eigen::MatrixXd given_covariance = {};
+  double degrees_of_freedom = 1.0;
+  /// Null where the method does not estimate it.
+  [[nodiscard]] const estimation::Parameter* find(std::string_view name) const;
+};
+
+/// The estimate by a method, or null.
+[[nodiscard]] const VehicleEstimate* find_estimate(std::span<const VehicleEstimate> estimates, VehicleMethod method);
+
+/// m/(2 L) (b/C_f - a/C_r) [rad/(m/s^2)]: extra steer angle per lateral acceleration of the linear bicycle. Positive:
+/// understeer.
+[[nodiscard]] double understeer_gradient(const VehicleParameters<double>& p);
+
+}  // namespace veridyn::vehicle

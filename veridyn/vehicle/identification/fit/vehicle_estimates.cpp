@@ -1,0 +1,425 @@
+#include "veridyn/vehicle/identification/fit/vehicle_estimates.hpp"
+
+#include <algorithm>
+#include <cmath>
+namespace veridyn::vehicle {
+namespace {
+
+using estimation::Method;
+using estimation::Parameter;
+using estimation::ParameterStatus;
+
+/// Cut-off of the regressions' filter where none is given [Hz].
+constexpr double kDefaultPass_Hz = 2.0;
+/// Longest correlation of residuals that is looked for.
+constexpr double kLongestLag_s = 2.0;
+/// Rounds of whitening, and the change of parameters [sigma] from which they are settled.
+constexpr int kMostWeighings = 3;
+constexpr double kSettled = 0.2;
+/// Of a search that only compares structures.
+constexpr int kRelaxationsToCompare = 4, kStepsToCompare = 10;
+constexpr double kToleranceToCompare = 0.1;
+/// Of a search [sigma]: a fiftieth of what is not known anyway.
+constexpr double kTolerance = 0.02;
+
+constexpr auto row_of(DriveUnknown u) { return static_cast<Eigen::Index>(u); }
+
+Parameter describe(std::string name, std::string unit, double value, double variance, double freedom,
+                   double significance) {
+  Parameter p;
+  p.name = std::move(name);
+  p.unit = std::move(unit);
+  p.value = value;
+  p.sigma = p.sigma_white = std::sqrt(std::max(0.0, variance));
+  estimation::set_interval(p, std::max(1.0, freedom));
+  p.status = !std::isfinite(p.sigma)    ? ParameterStatus::kNotExcited
+             : p.p_value < significance ? ParameterStatus::kIdentified
+                                        : ParameterStatus::kInsignificant;
+  return p;
+}
+
+/// Derivatives of the understeer gradient with respect to C_f, C_r and a (at a given wheelbase).
+Eigen::Vector3d understeer_slope(const VehicleParameters<double>& p) {
+  const double L = p.wheelbase(), m = p.mass;
+  return {-0.5 * m * p.b / (L * p.C_f * p.C_f), 0.5 * m * p.a / (L * p.C_r * p.C_r),
+          -0.5 * m / L * (1.0 / p.C_f + 1.0 / p.C_r)};
+}
+
+/// Physical parameters that are hardly known are not excited, whatever their t-test says.
+std::vector<Parameter> with_unexcited(std::vector<Parameter> parameters, double max_relative_sigma) {
+  for (Parameter& p : parameters) {
+    const bool physical = p.name == "C_f" || p.name == "C_r" || p.name == "I_z" || p.name == "mu";
+    // At a bound that the data do not even hold it to, a search ends by chance.
+    const double most = p.status == ParameterStatus::kAtBound ? 1.0 : max_relative_sigma;
+    if (physical && !(p.sigma <= most * std::abs(p.value))) p.status = ParameterStatus::kNotExcited;
+  }
+  return parameters;
+}
+
+/// What the uncertainty of mass, a and b adds to the covariance of C_f, C_r, I_z and the understeer gradient.
+Eigen::Matrix4d known_covariance(const VehicleProblem& problem, const GeometrySlopes& slopes,
+                                 const Eigen::Vector4d& value) {
+  const VehicleIdentifyOptions& o = problem.options;
+  Eigen::Matrix4d P = Eigen::Matrix4d::Zero();
+  if (o.mass_sigma > 0.0) {
+    Eigen::Vector4d g = value / problem.start.mass;
+    g(3) = 0.0;
+    P += o.mass_sigma * o.mass_sigma * g * g.transpose();
+  }
+  for (const bool front : {true, false}) {
+    const Eigen::Vector4d& g = front ? slopes.a : slopes.b;
+    const double sigma = front ? o.a_sigma : o.b_sigma;
+    const Eigen::Vector4d scaled = g.cwiseProduct(value);
+    P += sigma * sigma * scaled * scaled.transpose();
+  }
+  return P;
+}
+
+Eigen::Vector4d values_of(const AxleEstimate& e) { return {e.value(0), e.value(1), e.value(2), e.understeer}; }
+
+GeometrySlopes geometry_slopes(const VehicleProblem& problem, const AxleEstimate& typical) {
+  const auto slope = [&](double VehicleParameters<double>::*field, double sigma) -> Eigen::Vector4d {
+    if (!(sigma > 0.0)) return Eigen::Vector4d::Zero();
+    VehicleParameters<double> changed = problem.start;
+    changed.*field += sigma;
+    const DriveRegressionResult again = regress(problem, problem.segments.identification, changed);
+    const AxleEstimate* other = again.find(Method::kGtls);
+    if (other == nullptr || !other->usable) return Eigen::Vector4d::Zero();
+    return (values_of(*other) - values_of(typical)).cwiseQuotient(values_of(typical)) / sigma;
+  };
+  return {slope(&VehicleParameters<double>::a, problem.options.a_sigma),
+          slope(&VehicleParameters<double>::b, problem.options.b_sigma)};
+}
+
+/// Covariance of C_f, C_r, I_z, the understeer gradient and, where there is one, the steer offset; mass, a and b taken
+/// as exact.
+Eigen::MatrixXd axle_covariance(const VehicleProblem& problem, const AxleEstimate& axle, bool steer_bias) {
+  const Eigen::Index n = steer_bias ? 5 : 4;
+  Eigen::MatrixXd P = Eigen::MatrixXd::Zero(n, n);
+  if (axle.usable) {
+    VehicleParameters<double> p = problem.start;
+    p.C_f = axle.value(0);
+    p.C_r = axle.value(1);
+    p.I_z = axle.value(2);
+    Eigen::Vector3d g = understeer_slope(p);
+    g(2) = 0.0;
+    P.topLeftCorner(3, 3) = axle.covariance;
+    P.block(0, 3, 3, 1) = axle.covariance * g;
+    P.block(3, 0, 1, 3) = (axle.covariance * g).transpose();
+    P(3, 3) = g.dot(axle.covariance * g);
+  } else {
+    P.diagonal().head(3).setConstant(kInfinity);
+    P(3, 3) = axle.understeer_only ? axle.understeer_sigma * axle.understeer_sigma : kInfinity;
+  }
+  if (steer_bias) P(4, 4) = axle.steer_bias_sigma * axle.steer_bias_sigma;
+  return P;
+}
+
+VehicleEstimate estimate_of(const VehicleProblem& problem, const AxleEstimate& axle, const GeometrySlopes& slopes,
+                            bool steer_bias) {
+  VehicleEstimate e;
+  e.method = vehicle_method(axle.method);
+  e.message = axle.message;
+  e.usable = axle.usable;
+  e.covariance = axle_covariance(problem, axle, steer_bias);
+  if (axle.usable) {
+    e.given_covariance = Eigen::MatrixXd::Zero(e.covariance.rows(), e.covariance.cols());
+    e.given_covariance.topLeftCorner(4, 4) = known_covariance(problem, slopes, values_of(axle));
+    e.covariance += e.given_covariance;
+  }
+  e.degrees_of_freedom = std::max(1.0, axle.degrees_of_freedom);
+  const auto add = [&](const char* name, const char* unit, double v) {
+    const auto i = static_cast<Eigen::Index>(e.parameters.size());
+    e.parameters.push_back(
+        describe(name, unit, v, e.covariance(i, i), axle.degrees_of_freedom, problem.options.significance));
+  };
+  add("C_f", "N/rad", axle.usable ? axle.value(0) : problem.start.C_f);
+  add("C_r", "N/rad", axle.usable ? axle.value(1) : problem.start.C_r);
+  add("I_z", "kg m^2", axle.usable ? axle.value(2) : problem.start.I_z);
+  add("understeer_gradient", "rad s^2/m", axle.understeer);
+  if (steer_bias) add("steer_offset", "rad", axle.steer_bias);
+  e.parameters = with_unexcited(std::move(e.parameters), problem.options.max_relative_sigma);
+  // Without the lateral velocity all three come out of the same coefficients: what noise does to one of them (it
+  // pulls p and q towards zero) it does to all.
+  const auto unexcited = [](const Parameter& p) { return p.status == ParameterStatus::kNotExcited; };
+  if (std::any_of(e.parameters.begin(), e.parameters.begin() + 3, unexcited)) {
+    for (std::size_t i = 0; i < 3; ++i) e.parameters[i].status = ParameterStatus::kNotExcited;
+  }
+  return e;
+}
+
+/// Where output error begins: the equation error that is known well enough, else the start.
+VehicleParameters<double> begin_of_search(const VehicleProblem& problem, const EquationErrorEstimates* equation_error) {
+  VehicleParameters<double> begin = problem.start;
+  if (equation_error == nullptr) return begin;
+  const DriveRegressionResult& regression = equation_error->regression;
+  for (const Method method : {regression.recommended, Method::kGtls, Method::kOls}) {
+    const AxleEstimate* e = regression.find(method);
+    if (e == nullptr || !e->usable) continue;
+    const Eigen::Vector3d sigma = e->covariance.diagonal().cwiseSqrt();
+    if (!(sigma.cwiseQuotient(e->value).array() < problem.options.max_relative_sigma).all()) continue;
+    begin.C_f = e->value(0);
+    begin.C_r = e->value(1);
+    begin.I_z = e->value(2);
+    break;
+  }
+  return begin;
+}
+
+/// The free unknowns in their order, with the understeer gradient after those of the vehicle.
+struct Places {
+  std::vector<Eigen::Index> unknown;  // of each free one
+  Eigen::Index understeer = 0;        // row of the understeer gradient
+  [[nodiscard]] Eigen::Index rows() const { return static_cast<Eigen::Index>(unknown.size()) + 1; }
+  /// Row i's unknown; not for the understeer gradient's row.
+  [[nodiscard]] Eigen::Index at(Eigen::Index row) const { return unknown[row < understeer ? row : row - 1]; }
+};
+
+Places places_of(const DriveModelOptions& options) {
+  Places places;
+  for (std::size_t i = 0; i < kDriveUnknowns; ++i) {
+    if (options.free[i]) places.unknown.push_back(static_cast<Eigen::Index>(i));
+  }
+  places.understeer = std::count_if(places.unknown.begin(), places.unknown.end(),
+                                    [](Eigen::Index i) { return i < row_of(DriveUnknown::kSteerBias); });
+  return places;
+}
+
+/// Covariance of the rows of `places`, mass, a and b taken as exact.
+Eigen::MatrixXd output_error_covariance(const estimation::OutputErrorEstimate& result,
+                                        const VehicleParameters<double>& p, const Places& places) {
+  const Eigen::Index n = places.rows(), understeer = places.understeer;
+  const Eigen::Vector3d g = understeer_slope(p);
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(n, kDriveUnknowns);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (i == understeer) {
+      J(i, 0) = g(0);
+      J(i, 1) = g(1);
+      J(i, 3) = g(2);
+    } else {
+      J(i, places.at(i)) = 1.0;
+    }
+  }
+  const Eigen::MatrixXd finite = result.covariance.unaryExpr([](double c) { return std::isfinite(c) ? c : 0.0; });
+  Eigen::MatrixXd P = J * finite * J.transpose();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < J.cols(); ++j) {
+      if (J(i, j) != 0.0 && !std::isfinite(result.covariance(j, j))) P(i, i) = kInfinity;
+    }
+  }
+  return P;
+}
+
+/// What the uncertainty of mass, a and b adds to the rows of `places`.
+Eigen::MatrixXd given_covariance(const VehicleProblem& problem, const GeometrySlopes& slopes,
+                                 const estimation::OutputErrorEstimate& result, const VehicleParameters<double>& p,
+                                 const Places& places) {
+  const Eigen::Index understeer = places.understeer;
+  Eigen::MatrixXd P = Eigen::MatrixXd::Zero(places.rows(), places.rows());
+  const Eigen::Matrix4d extra =
+      known_covariance(problem, slopes, {result.theta(0), result.theta(1), result.theta(2), understeer_gradient(p)});
+  // Rows of C_f, C_r, I_z (where free) and the understeer gradient.
+  std::array<Eigen::Index, 4> row{-1, -1, -1, understeer};
+  for (std::size_t i = 0; i < places.unknown.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    if (places.unknown[i] < 3) row[places.unknown[i]] = at < understeer ? at : at + 1;
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = 0; j < 4; ++j) {
+      if (row[i] >= 0 && row[j] >= 0) P(row[i], row[j]) += extra(i, j);
+    }
+  }
+  return P;
+}
+
+VehicleEstimate estimate_of(const VehicleProblem& problem, const GeometrySlopes& slopes,
+                            const estimation::OutputErrorEstimate& result) {
+  VehicleEstimate e;
+  e.method = VehicleMethod::kOutputError;
+  e.usable = result.has_estimate();
+  e.message = result.message;
+  if (!e.usable) return e;
+  e.degrees_of_freedom = std::max(1.0, result.degrees_of_freedom);
+  const VehicleIdentifyOptions& o = problem.options;
+  const Places places = places_of(o.model);
+  VehicleParameters<double> p = problem.start;
+  p.C_f = result.theta(0);
+  p.C_r = result.theta(1);
+  p.I_z = result.theta(2);
+  p.a = result.theta(3);
+  p.b = problem.start.wheelbase() - p.a;
+  e.given_covariance = given_covariance(problem, slopes, result, p, places);
+  e.covariance = output_error_covariance(result, p, places) + e.given_covariance;
+  for (Eigen::Index i = 0; i < places.rows(); ++i) {
+    if (i == places.understeer) {
+      e.parameters.push_back(describe("understeer_gradient", "rad s^2/m", understeer_gradient(p), e.covariance(i, i),
+                                      result.degrees_of_freedom, o.significance));
+      continue;
+    }
+    const Parameter& given = result.parameters[places.at(i)];
+    Parameter made =
+        describe(given.name, given.unit, given.value, e.covariance(i, i), result.degrees_of_freedom, o.significance);
+    made.sigma_white = given.sigma_white;
+    made.variance_inflation = given.variance_inflation;
+    made.unexcited_share = given.unexcited_share;
+    if (given.status == ParameterStatus::kNotExcited || given.status == ParameterStatus::kAtBound)
+      made.status = given.status;
+    e.parameters.push_back(std::move(made));
+  }
+  e.parameters = with_unexcited(std::move(e.parameters), o.max_relative_sigma);
+  return e;
+}
+
+}  // namespace
+
+DriveRegressionResult regress(const VehicleProblem& problem, std::span<const TimeSpan> spans,
+                              const VehicleParameters<double>& known) {
+  estimation::RegressionOptions options;
+  options.significance = problem.options.significance;
+  options.signal_to_noise = problem.options.signal_to_noise;
+  const double pass_Hz = problem.signal_options.pass_Hz > 0.0
+                             ? problem.signal_options.pass_Hz
+                             : std::min(kDefaultPass_Hz, 0.1 * problem.signals.grid.rate_Hz());
+  return equation_error(drive_regressions(problem.signals, spans, known, pass_Hz), known, options);
+}
+
+EquationErrorEstimates estimate_by_equation_error(const VehicleProblem& problem) {
+  EquationErrorEstimates out;
+  out.regression = regress(problem, problem.segments.identification, problem.start);
+  const AxleEstimate* typical = out.regression.find(Method::kGtls);
+  if (typical != nullptr && typical->usable) out.slopes = geometry_slopes(problem, *typical);
+  for (const AxleEstimate& axle : out.regression.axles)
+    out.estimates.push_back(estimate_of(problem, axle, out.slopes, !out.regression.data.direct));
+  return out;
+}
+
+OutputErrorProblem output_error_problem(const VehicleProblem& problem, const EquationErrorEstimates* equation_error,
+                                        double search_factor) {
+  DriveModelOptions model_options = problem.options.model;
+  model_options.gravity = problem.signal_options.gravity;
+  model_options.search_factor = search_factor;
+  estimation::OutputErrorOptions options;
+  options.significance = problem.options.significance;
+  // What is not determined by then crawls along a valley: more relaxations would not help it.
+  options.max_relaxations = 12;
+  options.tolerance = kTolerance;
+  options.max_lag =
+      std::max<Eigen::Index>(20, static_cast<Eigen::Index>(kLongestLag_s * problem.signals.grid.rate_Hz()));
+  return {DriveParametricModel(problem.signals, problem.segments.identification,
+                               begin_of_search(problem, equation_error), model_options),
+          options};
+}
+
+void OutputErrorProblem::weigh(const DriveWhitening& whitening) {
+  if (whitening.empty()) return;
+  model = model.weighed(whitening);
+  // Noise of the steering is in all outputs at once.
+  options.noise = estimation::OutputNoise::kFull;
+}
+
+namespace {
+
+OutputErrorResult fitted(const VehicleProblem& problem, const EquationErrorEstimates* equation_error,
+                         OutputErrorProblem fitted, const Eigen::VectorXd& search_start, Progress& progress) {
+  fitted.options.search_start = within_bounds(fitted.model, search_start);
+  OutputErrorResult out;
+  out.raw = estimation::output_error(fitted.model, fitted.model.measured(), fitted.options, progress);
+  out.estimate = estimate_of(problem, equation_error != nullptr ? equation_error->slopes : GeometrySlopes{}, out.raw);
+  return out;
+}
+
+/// The largest change of a parameter in standard errors.
+double largest_change(const estimation::OutputErrorEstimate& before, const estimation::OutputErrorEstimate& after) {
+  double largest = 0.0;
+  for (Eigen::Index i = 0; i < after.theta.size(); ++i) {
+    const double sigma = std::sqrt(after.covariance(i, i));
+    if (std::isfinite(sigma) && sigma > 0.0)
+      largest = std::max(largest, std::abs(after.theta(i) - before.theta(i)) / sigma);
+  }
+  return largest;
+}
+
+}  // namespace
+
+OutputErrorResult estimate_by_output_error(const VehicleProblem& problem, const EquationErrorEstimates* equation_error,
+                                           const Eigen::VectorXd& search_start, const DriveWhitening& weighing,
+                                           SearchEffort effort, Progress& progress) {
+  OutputErrorProblem given = output_error_problem(problem, equation_error);
+  given.weigh(weighing);
+  if (effort == SearchEffort::kOnce) given.options.max_relaxations = 1;
+  if (effort == SearchEffort::kToCompare) {
+    given.options.max_relaxations = kRelaxationsToCompare;
+    given.options.max_steps = kStepsToCompare;
+    given.options.tolerance = kToleranceToCompare;
+  }
+  OutputErrorResult out = fitted(problem, equation_error, std::move(given), search_start, progress);
+  out.whitening = weighing;
+  return out;
+}
+
+OutputErrorResult refined(OutputErrorResult estimate, const VehicleProblem& problem,
+                          const EquationErrorEstimates* equation_error, Progress& progress) {
+  if (!estimate.raw.usable()) return estimate;
+  const OutputErrorProblem given = output_error_problem(problem, equation_error);
+  DriveWhitening whitening = given.model.whitening(estimate.raw.theta);
+  if (whitening.empty()) {
+    OutputErrorResult next =
+        estimate_by_output_error(problem, equation_error, estimate.raw.theta, {}, SearchEffort::kToTheEnd, progress);
+    return next.raw.has_estimate() || !progress.interrupted() ? std::move(next) : std::move(estimate);
+  }
+  for (int round = 0; round < kMostWeighings && !progress.interrupted(); ++round) {
+    if (round > 0) whitening = given.model.whitening(estimate.raw.theta);
+    OutputErrorProblem weighed = given;
+    weighed.weigh(whitening);
+    OutputErrorResult next = fitted(problem, equation_error, std::move(weighed), estimate.raw.theta, progress);
+    if (!next.raw.usable()) break;
+    const double moved = largest_change(estimate.raw, next.raw);
+    estimate = std::move(next);
+    estimate.whitening = whitening;
+    if (moved < kSettled) break;
+  }
+  return estimate;
+}
+
+Eigen::VectorXd within_bounds(const DriveParametricModel& model, Eigen::VectorXd theta) {
+  for (Eigen::Index i = 0; i < theta.size(); ++i) {
+    const estimation::ModelParameter& p = model.parameters()[i];
+    theta(i) = p.fixed ? p.start : std::clamp(theta(i), p.low, p.high);
+  }
+  return theta;
+}
+
+VehicleEstimate unexcited_estimate(const VehicleProblem& problem, std::string reason) {
+  VehicleEstimate e;
+  e.message = std::move(reason);
+  const VehicleParameters<double>& p = problem.start;
+  for (const auto& [name, unit, value] :
+       {std::tuple{"C_f", "N/rad", p.C_f}, std::tuple{"C_r", "N/rad", p.C_r}, std::tuple{"I_z", "kg m^2", p.I_z},
+        std::tuple{"understeer_gradient", "rad s^2/m", understeer_gradient(p)}})
+    e.parameters.push_back(describe(name, unit, value, kInfinity, 1.0, problem.options.significance));
+  e.covariance = Eigen::MatrixXd::Zero(4, 4);
+  e.covariance.diagonal().setConstant(kInfinity);
+  return e;
+}
+
+VehicleMethod choose_method(std::span<const VehicleEstimate> estimates, const DriveRegressionResult* regression,
+                            std::optional<VehicleMethod> desired) {
+  const auto usable = [&](VehicleMethod method) {
+    const VehicleEstimate* e = find_estimate(estimates, method);
+    return e != nullptr && e->usable;
+  };
+  if (desired) return usable(*desired) ? *desired : VehicleMethod::kNone;
+  if (usable(VehicleMethod::kOutputError)) return VehicleMethod::kOutputError;
+  if (regression == nullptr) return VehicleMethod::kNone;
+  std::vector<Method> order{Method::kGtls, Method::kPcaGtls, Method::kOls};
+  if (regression->recommends) order.insert(order.begin(), regression->recommended);
+  for (const Method m : order) {
+    if (usable(vehicle_method(m))) return vehicle_method(m);
+  }
+  // Steady cornering: the understeer gradient alone.
+  const AxleEstimate* pca = regression->find(Method::kPcaGtls);
+  const bool understeer = pca != nullptr && pca->understeer_only && std::isfinite(pca->understeer_sigma);
+  return understeer ? VehicleMethod::kPcaGtls : VehicleMethod::kNone;
+}
+
+}  // namespace veridyn::vehicle

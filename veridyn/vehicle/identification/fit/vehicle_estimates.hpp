@@ -1,0 +1,89 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "veridyn/core/progress.hpp"
+#include "veridyn/estimation/output_error/output_error.hpp"
+#include "veridyn/vehicle/identification/fit/axle_estimate.hpp"
+#include "veridyn/vehicle/identification/fit/drive_parametric_model.hpp"
+#include "veridyn/vehicle/identification/fit/drive_whitening.hpp"
+#include "veridyn/vehicle/identification/fit/vehicle_estimate.hpp"
+#include "veridyn/vehicle/identification/fit/vehicle_problem.hpp"
+
+namespace veridyn::vehicle {
+
+/// How C_f, C_r, I_z and the understeer gradient change, as shares of themselves, per metre of a and of b. They enter
+/// the estimates' covariances through `[identify.uncertainty]`; 0 where that gives no uncertainty.
+struct GeometrySlopes {
+  Eigen::Vector4d a = Eigen::Vector4d::Zero();
+  Eigen::Vector4d b = Eigen::Vector4d::Zero();
+};
+
+/// Equation error by all regressions, with the vehicle's parameters that each gives.
+struct EquationErrorEstimates {
+  DriveRegressionResult regression;
+  GeometrySlopes slopes;
+  std::vector<VehicleEstimate> estimates;  ///< one for each regression
+};
+
+/// Output error, with the vehicle's parameters that it gives.
+struct OutputErrorResult {
+  estimation::OutputErrorEstimate raw;
+  VehicleEstimate estimate;
+  DriveWhitening whitening = {};  ///< by which its residual was weighed; may be empty
+};
+
+/// The regressions over some spans, with `known` for mass, a and b.
+[[nodiscard]] DriveRegressionResult regress(const VehicleProblem& problem, std::span<const TimeSpan> spans,
+                                            const VehicleParameters<double>& known);
+
+/// All regressions over the identification segments; what the uncertainty of mass, a and b adds is in the covariances.
+[[nodiscard]] EquationErrorEstimates estimate_by_equation_error(const VehicleProblem& problem);
+
+/// How far a search goes.
+enum class SearchEffort {
+  kOnce,       ///< one search with the noise that is left where it begins: what one more unknown would say
+  kToCompare,  ///< a few steps: enough to tell structures apart
+  kToTheEnd
+};
+
+/// Starts from the equation error where that is known well enough; `equation_error` may be null. `search_start`: of all
+/// DriveUnknowns, where the search begins instead; may be empty, as may be the filter that weighs the residual.
+[[nodiscard]] OutputErrorResult estimate_by_output_error(const VehicleProblem& problem,
+                                                         const EquationErrorEstimates* equation_error,
+                                                         const Eigen::VectorXd& search_start,
+                                                         const DriveWhitening& weighing, SearchEffort effort,
+                                                         Progress& progress);
+
+/// An estimate followed to the end. Where the steering has noise its residual is whitened, in rounds: the filter is
+/// that of the estimate before.
+[[nodiscard]] OutputErrorResult refined(OutputErrorResult estimate, const VehicleProblem& problem,
+                                        const EquationErrorEstimates* equation_error, Progress& progress);
+
+/// The drive's model, begun where the equation error is known well enough, and how it is fitted.
+struct OutputErrorProblem {
+  DriveParametricModel model;
+  estimation::OutputErrorOptions options;
+  /// Whitens the residual, whose outputs are correlated then; an empty filter changes nothing.
+  void weigh(const DriveWhitening& whitening);
+};
+/// The output-error problem of a drive; `equation_error` may be null, `search_factor` as of DriveModelOptions.
+[[nodiscard]] OutputErrorProblem output_error_problem(const VehicleProblem& problem,
+                                                      const EquationErrorEstimates* equation_error,
+                                                      double search_factor = 1e3);
+/// Values at which a search of the model may begin: of what is free those of `theta`, the rest at its start.
+[[nodiscard]] Eigen::VectorXd within_bounds(const DriveParametricModel& model, Eigen::VectorXd theta);
+
+/// The parameters of the start, all of them not excited; `reason` is its message.
+[[nodiscard]] VehicleEstimate unexcited_estimate(const VehicleProblem& problem, std::string reason);
+
+/// As VehicleIdentifyOptions::method describes; kNone when no method gave an estimate. `regression` may be null.
+[[nodiscard]] VehicleMethod choose_method(std::span<const VehicleEstimate> estimates,
+                                          const DriveRegressionResult* regression,
+                                          std::optional<VehicleMethod> desired);
+
+}  // namespace veridyn::vehicle

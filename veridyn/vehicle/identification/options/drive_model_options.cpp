@@ -1,0 +1,281 @@
+#include "veridyn/vehicle/identification/options/drive_model_options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/nearest.hpp"
+
+namespace veridyn::vehicle {
+namespace {
+
+constexpr std::array kRolls{DriveUnknown::kRollGradient,     DriveUnknown::kRollFrequency,
+                            DriveUnknown::kRollDamping,      DriveUnknown::kRollArm,
+                            DriveUnknown::kRelaxationLength, DriveUnknown::kLoadTransfer,
+                            DriveUnknown::kLoadTransferLoss, DriveUnknown::kLoadTransferBalance};
+constexpr std::array kOfCourse{DriveUnknown::kSideslipBias, DriveUnknown::kCourseDelay};
+constexpr std::array kOfEffects{DriveUnknown::kDownforceF, DriveUnknown::kDownforceR, DriveUnknown::kLoadSensitivity,
+                                DriveUnknown::kFrontForceShare};
+constexpr std::array kByGeometry{DriveUnknown::kCf,
+                                 DriveUnknown::kCr,
+                                 DriveUnknown::kIz,
+                                 DriveUnknown::kA,
+                                 DriveUnknown::kRollGradient,
+                                 DriveUnknown::kRollFrequency,
+                                 DriveUnknown::kRollDamping,
+                                 DriveUnknown::kRollArm,
+                                 DriveUnknown::kRelaxationLength,
+                                 DriveUnknown::kLoadTransfer,
+                                 DriveUnknown::kLoadTransferLoss,
+                                 DriveUnknown::kLoadTransferBalance};
+
+struct Knowledge {
+  double mean = 0.0, sigma = 0.0;
+};
+
+/// What is known of an unknown by the vehicle's geometry; without a prior where its sigma is infinite.
+Knowledge by_geometry(DriveUnknown unknown, const VehicleParameters<double>& vehicle, double roll_gradient) {
+  constexpr double kGradient = 0.0089, kFrequency = 10.0, kWheelbase = 2.6;
+  switch (unknown) {
+    case DriveUnknown::kCf:
+      return {vehicle.C_f, kInfinity};
+    case DriveUnknown::kCr:
+      return {vehicle.C_r, kInfinity};
+    case DriveUnknown::kIz:
+      return {vehicle.I_z, kInfinity};
+    case DriveUnknown::kA:
+      return {vehicle.a, kInfinity};
+    case DriveUnknown::kRollGradient:
+      return roll_gradient > 0.0 ? Knowledge{roll_gradient, 0.2 * roll_gradient}
+                                 : Knowledge{kGradient, 0.5 * kGradient};
+    case DriveUnknown::kRollFrequency: {
+      const double typical = kFrequency * std::sqrt(kWheelbase / vehicle.wheelbase());
+      return {typical, 0.4 * typical};
+    }
+    case DriveUnknown::kRollDamping:
+      return {0.3, 0.2};
+    case DriveUnknown::kRollArm:
+      return {0.85 * vehicle.cg_height, 0.25 * vehicle.cg_height};
+    case DriveUnknown::kLoadTransfer: {
+      const double rigid = 4.0 * vehicle.cg_height / (vehicle.track_f + vehicle.track_r);
+      return {rigid, 0.25 * rigid};
+    }
+    case DriveUnknown::kLoadTransferLoss:
+      return {0.2, 0.2};
+    case DriveUnknown::kLoadTransferBalance:
+      return {0.0, 0.4};
+    default:
+      return {0.12 * vehicle.wheelbase(), 0.06 * vehicle.wheelbase()};
+  }
+}
+
+/// Whether a structure frees an unknown of those that structures free.
+bool frees(DriveStructure structure, DriveUnknown unknown) {
+  switch (unknown) {
+    case DriveUnknown::kRelaxationLength:
+      return has_relaxation(structure);
+    case DriveUnknown::kLoadTransfer:
+      return structure == DriveStructure::kSaturation;
+    case DriveUnknown::kLoadTransferLoss:
+      return structure == DriveStructure::kMagicFormula;
+    case DriveUnknown::kLoadTransferBalance:
+      return saturates(structure);
+    default:
+      return has_roll(structure);
+  }
+}
+
+/// Lowest and highest value of an unknown that starts at `start`; `factor` is `DriveModelOptions::search_factor`.
+std::pair<double, double> bounds_of(DriveUnknown unknown, double start, double wheelbase, double factor) {
+  switch (unknown) {
+    case DriveUnknown::kCf:
+    case DriveUnknown::kCr:
+    case DriveUnknown::kIz:
+      return {start / factor, factor * start};
+    case DriveUnknown::kA:
+      return {0.02 * wheelbase, 0.98 * wheelbase};
+    case DriveUnknown::kMu:
+      return {0.02, 5.0};
+    case DriveUnknown::kShape:
+      return {1.0, 1.99};
+    case DriveUnknown::kCurvature:
+      return {-10.0, 1.0};
+    case DriveUnknown::kRollGradient:
+      return {0.0, 0.1};
+    case DriveUnknown::kRollFrequency:
+      return {0.4 * start, 2.5 * start};
+    case DriveUnknown::kRollDamping:
+      return {0.05, 1.2};
+    case DriveUnknown::kRollArm:
+      return {0.0, wheelbase};
+    case DriveUnknown::kLoadTransfer:
+      return {0.0, 2.0};
+    case DriveUnknown::kLoadTransferLoss:
+      return {0.0, 1.0};
+    case DriveUnknown::kLoadTransferBalance:
+      return {-1.0, 1.0};
+    case DriveUnknown::kDownforceF:
+    case DriveUnknown::kDownforceR:
+      return {-2e-4, 1e-2};
+    case DriveUnknown::kLoadSensitivity:
+      return {-1.0, 3.0};
+    case DriveUnknown::kFrontForceShare:
+      return {0.0, 1.0};
+    case DriveUnknown::kRelaxationLength:
+      return {kShortestRelaxation * wheelbase, wheelbase};
+    case DriveUnknown::kSteerScale:
+    case DriveUnknown::kAccelYScale:
+      return {-0.9, kInfinity};
+    case DriveUnknown::kSteerDelay:
+    case DriveUnknown::kYawRateDelay:
+    case DriveUnknown::kAccelYDelay:
+    case DriveUnknown::kCourseDelay:
+      return {-kLongestDelay_s, kLongestDelay_s};
+    default:
+      return {-kInfinity, kInfinity};
+  }
+}
+
+}  // namespace
+
+DriveModelOptions::DriveModelOptions() {
+  for (const DriveUnknown u : {DriveUnknown::kCf, DriveUnknown::kCr, DriveUnknown::kIz, DriveUnknown::kSteerBias,
+                               DriveUnknown::kYawRateBias, DriveUnknown::kAccelYBias})
+    free[u] = true;
+  start.fill(0.0);
+  for (const DriveUnknown u : kByGeometry) start[u] = kNaN;
+  start[DriveUnknown::kMu] = 1.0;
+  start[DriveUnknown::kShape] = 1.3;
+  prior.fill(kInfinity);
+  prior[DriveUnknown::kSteerBias] = kDegree;
+  prior[DriveUnknown::kYawRateBias] = kDegree;
+  prior[DriveUnknown::kAccelYBias] = 0.5;
+  prior[DriveUnknown::kSteerScale] = 0.1;
+  prior[DriveUnknown::kAccelYScale] = 0.1;
+  for (const DriveUnknown u :
+       {DriveUnknown::kSteerDelay, DriveUnknown::kYawRateDelay, DriveUnknown::kAccelYDelay, DriveUnknown::kCourseDelay})
+    prior[u] = 0.1;
+  prior[DriveUnknown::kSideslipBias] = kDegree;
+  for (const DriveUnknown u : kRolls) prior[u] = kNaN;
+  prior[DriveUnknown::kDownforceF] = prior[DriveUnknown::kDownforceR] = kDownforceSigma;
+  // Stiffness grows with load by 0.4 to 1 of what it would in proportion (Pacejka 2006, chapter 1).
+  start[DriveUnknown::kLoadSensitivity] = 0.0;
+  prior[DriveUnknown::kLoadSensitivity] = 0.7;
+  // Brakes have 0.5 to 0.8 of it in front, engines all or nothing; one share stands for both.
+  start[DriveUnknown::kFrontForceShare] = 0.5;
+  prior[DriveUnknown::kFrontForceShare] = 0.3;
+  prior[DriveUnknown::kRollBias] = prior[DriveUnknown::kRollRateBias] = kDegree;
+  prior[DriveUnknown::kShape] = 0.2;
+  prior[DriveUnknown::kCurvature] = 0.5;
+}
+
+void DriveModelOptions::read_keys(const StudyTable& table) {
+  const std::vector<std::string> tyres{"linear", "magic formula"};
+  tyre = table.choice_or("tyre", tyres, "linear") == "linear" ? DriveTyre::kLinear : DriveTyre::kMagicFormula;
+  const std::vector<std::string> names(kDriveUnknownNames.begin(), kDriveUnknownNames.end());
+  if (tyre == DriveTyre::kMagicFormula) {
+    free[DriveUnknown::kMu] = true;
+    free[DriveUnknown::kShape] = true;
+  }
+  if (table.has("estimate")) {
+    free.fill(false);
+    for (const std::string& name : table.texts("estimate")) {
+      const auto at = std::find(names.begin(), names.end(), name);
+      if (at == names.end())
+        table.fail("estimate", fmt::format("'{}' is not an unknown of the drive model{}", name,
+                                           suggestion(name, names, names.size())));
+      const auto unknown = static_cast<DriveUnknown>(at - names.begin());
+      if (std::ranges::find(kRolls, unknown) != kRolls.end())
+        table.fail("estimate", fmt::format("names {}, which identify.structure frees or not", name));
+      if (std::ranges::find(kOfCourse, unknown) != kOfCourse.end())
+        table.fail("estimate", fmt::format("names {}, which is estimated wherever course and heading give the lateral "
+                                           "velocity",
+                                           name));
+      if (std::ranges::find(kOfEffects, unknown) != kOfEffects.end())
+        table.fail("estimate", fmt::format("names {}, which identify.effects frees or not", name));
+      free[unknown] = true;
+    }
+  }
+  if (tyre == DriveTyre::kLinear) {
+    for (const DriveUnknown u : {DriveUnknown::kMu, DriveUnknown::kShape, DriveUnknown::kCurvature}) {
+      if (free[u])
+        table.fail("estimate", fmt::format("names {}, which linear tyres do not have (tyre = \"magic formula\")",
+                                           kDriveUnknownNames[u]));
+    }
+  }
+  if (table.has("smoothing")) {
+    smoothing_Hz = table.number("smoothing", "Hz");
+    if (!(smoothing_Hz >= 0.0)) table.fail("smoothing", fmt::format("= {:g} Hz must be >= 0 (0: none)", smoothing_Hz));
+  }
+  const StudyTable starts = table.table_or_empty("start");
+  const StudyTable priors = table.table_or_empty("prior");
+  for (const DriveUnknown u : kAllDriveUnknowns) {
+    const std::string_view name = kDriveUnknownNames[u], unit = kDriveUnknownUnits[u];
+    if (starts.has(name)) start[u] = starts.number(name, unit);
+    if (!priors.has(name)) continue;
+    if (priors.is_text(name) && priors.text(name) == "none")
+      prior[u] = kInfinity;
+    else
+      prior[u] = priors.positive(name, unit);
+  }
+}
+
+DriveModelOptions with_geometry(DriveModelOptions options, const VehicleParameters<double>& vehicle,
+                                double roll_gradient) {
+  for (const DriveUnknown u : kByGeometry) {
+    const Knowledge known = by_geometry(u, vehicle, roll_gradient);
+    if (!std::isfinite(options.start[u])) options.start[u] = known.mean;
+    if (std::isnan(options.prior[u])) options.prior[u] = known.sigma;
+  }
+  return options;
+}
+
+estimation::ModelParameter model_parameter(DriveUnknown unknown, const DriveModelOptions& options, double wheelbase) {
+  estimation::ModelParameter p;
+  p.name = std::string(kDriveUnknownNames[unknown]);
+  p.unit = std::string(kDriveUnknownUnits[unknown]);
+  p.start = options.start[unknown];
+  p.prior_sigma = options.prior[unknown];
+  p.fixed = !options.free[unknown];
+  // Bounds must hold at the start, whatever was given.
+  const auto [low, high] = bounds_of(unknown, p.start, wheelbase, options.search_factor);
+  p.low = std::min(low, p.start);
+  p.high = std::max(high, p.start);
+  return p;
+}
+
+DriveModelOptions with_course(DriveModelOptions options, bool by_course) {
+  for (const DriveUnknown u : kOfCourse) options.free[u] = by_course;
+  return options;
+}
+
+DriveModelOptions with_structure(DriveModelOptions options, DriveStructure structure) {
+  options.structure = structure;
+  if (structure == DriveStructure::kScaledAccel) options.free[DriveUnknown::kAccelYScale] = true;
+  for (const DriveUnknown u : kRolls) options.free[u] = frees(structure, u);
+  if (saturates(structure) && options.tyre == DriveTyre::kLinear) {
+    const bool has_shape = structure == DriveStructure::kMagicFormula;
+    options.tyre = has_shape ? DriveTyre::kMagicFormula : DriveTyre::kFiala;
+    options.free[DriveUnknown::kMu] = true;
+    options.free[DriveUnknown::kShape] = options.free[DriveUnknown::kCurvature] = has_shape;
+    // Dry road and gravel: 0.6 to 1.2.
+    if (!std::isfinite(options.prior[DriveUnknown::kMu])) options.prior[DriveUnknown::kMu] = 0.3;
+  }
+  return options;
+}
+
+DriveModelOptions with_effects(DriveModelOptions options, const DriveEffects& effects) {
+  options.effects = effects;
+  options.free[DriveUnknown::kDownforceF] = options.free[DriveUnknown::kDownforceR] = effects[DriveEffect::kDownforce];
+  options.free[DriveUnknown::kLoadSensitivity] = options.free[DriveUnknown::kFrontForceShare] =
+      effects[DriveEffect::kPedals];
+  return options;
+}
+
+}  // namespace veridyn::vehicle

@@ -1,0 +1,179 @@
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+#include "veridyn/core/constants.hpp"
+#include "veridyn/core/enum_array.hpp"
+#include "veridyn/core/study.hpp"
+#include "veridyn/estimation/output_error/parametric_model.hpp"
+#include "veridyn/vehicle/identification/options/drive_structure.hpp"
+#include "veridyn/vehicle/model/vehicle_parameters.hpp"
+
+namespace veridyn::vehicle {
+
+/// Unknowns of the drive model, in this order.
+enum class DriveUnknown : std::size_t {
+  kCf,                   ///< cornering stiffness of one front tyre [N/rad]
+  kCr,                   ///< of one rear tyre
+  kIz,                   ///< yaw inertia [kg m^2]
+  kA,                    ///< centre of gravity to front axle [m]; the wheelbase stays
+  kMu,                   ///< peak friction coefficient D/F_z of the Magic Formula [-]
+  kShape,                ///< its shape factor C [-]
+  kCurvature,            ///< its curvature factor E [-]
+  kRollGradient,         ///< steady roll per lateral acceleration [rad/(m/s^2)]
+  kRollArm,              ///< centre of gravity above the roll axis [m]
+  kRelaxationLength,     ///< travel in which the slip angles follow by 63 % [m]
+  kLoadTransfer,         ///< share of a wheel's static load that moves to the other side at 1 g [-]
+  kLoadTransferLoss,     ///< share of the axles' force that is lost where the body leans as much as at 1 g [-]
+  kLoadTransferBalance,  ///< by how much of it the front axle loses more than that, and the rear one less [-]
+  kDownforceF,           ///< growth of the front axle's forces per square of the speed [s^2/m^2]
+  kDownforceR,           ///< of the rear axle's
+  kLoadSensitivity,      ///< growth of an axle's forces over that of its load by braking and driving [-]
+  kFrontForceShare,      ///< what the front axle has of the force along the vehicle [-]
+  /// Undamped natural frequency of roll [rad/s] and its damping ratio [-]: effective values of one mode. A drive shows
+  /// how late roll is, 2 damping/frequency; springs of the tyres below those of the body make both larger than the body
+  /// alone has them.
+  kRollFrequency,
+  kRollDamping,
+  kSteerBias,     ///< measured minus true [rad]
+  kSteerScale,    ///< measured over true, less 1: steering ratio, compliance [-]
+  kYawRateBias,   ///< [rad/s]
+  kAccelYBias,    ///< [m/s^2]: sensor and mean bank
+  kAccelYScale,   ///< measured over true, less 1 [-]
+  kRollBias,      ///< where roll is recorded [rad]
+  kRollRateBias,  ///< where the roll rate is recorded [rad/s]
+  kSideslipBias,  ///< of a lateral velocity made of course and heading, over the speed [rad]
+  kSteerDelay,    ///< how late the front wheels' force answers the recorded steering [s]
+  kYawRateDelay,  ///< how late the yaw rate is recorded [s]
+  kAccelYDelay,
+  kCourseDelay  ///< how late the course is, of which a lateral velocity is made [s]
+};
+/// How many unknowns there are.
+inline constexpr std::size_t kDriveUnknowns = 31;
+/// All of them, in order.
+inline constexpr auto kAllDriveUnknowns = enumerators<DriveUnknown, kDriveUnknowns>();
+/// A value for each of them.
+template <class T>
+using PerDriveUnknown = EnumArray<DriveUnknown, T, kDriveUnknowns>;
+/// Their names in studies and results, in the order of the enum.
+inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownNames{"C_f",
+                                                                      "C_r",
+                                                                      "I_z",
+                                                                      "a",
+                                                                      "mu",
+                                                                      "C",
+                                                                      "E",
+                                                                      "roll_gradient",
+                                                                      "roll_arm",
+                                                                      "relaxation_length",
+                                                                      "load_transfer",
+                                                                      "load_transfer_loss",
+                                                                      "load_transfer_balance",
+                                                                      "downforce_f",
+                                                                      "downforce_r",
+                                                                      "load_sensitivity",
+                                                                      "front_force_share",
+                                                                      "roll_frequency",
+                                                                      "roll_damping",
+                                                                      "steer_bias",
+                                                                      "steer_scale",
+                                                                      "yaw_rate_bias",
+                                                                      "accel_y_bias",
+                                                                      "accel_y_scale",
+                                                                      "roll_bias",
+                                                                      "roll_rate_bias",
+                                                                      "sideslip_bias",
+                                                                      "steer_delay",
+                                                                      "yaw_rate_delay",
+                                                                      "accel_y_delay",
+                                                                      "course_delay"};
+/// Their units, in the same order.
+inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownUnits{
+    "N/rad", "N/rad", "kg m^2",  "m",       "1",   "1", "1",     "rad s^2/m", "m",   "m", "1",
+    "1",     "1",     "s^2/m^2", "s^2/m^2", "1",   "1", "rad/s", "1",         "rad", "1", "rad/s",
+    "m/s^2", "1",     "rad",     "rad/s",   "rad", "s", "s",     "s",         "s"};
+static_assert(!kDriveUnknownNames.back().empty() && !kDriveUnknownUnits.back().empty(), "one is missing");
+/// Whether it is the vehicle's, and not of its sensors or the day.
+[[nodiscard]] constexpr bool is_of_the_vehicle(DriveUnknown u) { return u < DriveUnknown::kRollFrequency; }
+/// Whether it is an offset of a sensor, which each drive has its own of.
+[[nodiscard]] constexpr bool is_bias(DriveUnknown u) {
+  return u == DriveUnknown::kSteerBias || u == DriveUnknown::kYawRateBias || u == DriveUnknown::kAccelYBias ||
+         u == DriveUnknown::kRollBias || u == DriveUnknown::kRollRateBias || u == DriveUnknown::kSideslipBias;
+}
+
+/// Tyres of the drive model.
+enum class DriveTyre {
+  kLinear,        ///< F = C alpha
+  kFiala,         ///< a brush tyre, whose slope falls with its force, up to mu F_z
+  kMagicFormula,  ///< F = D sin(C atan(B alpha - E (B alpha - atan(B alpha)))), D = mu F_z, B C D = cornering stiffness
+};
+
+/// Study keys of `[identify]`.
+struct DriveModelOptions {
+  DriveTyre tyre = DriveTyre::kLinear;  ///< `tyre = "linear"` or "magic formula"
+  /// What moves; no key of its own: `VehicleIdentifyOptions::structure` chooses. Its unknowns are free.
+  DriveStructure structure = DriveStructure::kBicycle;
+  /// No key of its own either: `VehicleIdentifyOptions::effects`.
+  DriveEffects effects{};
+  /// `estimate = ["C_f", "C_r", ...]`: names of what is free besides the structure's unknowns. Default: C_f, C_r, I_z,
+  /// the three biases, and with the Magic Formula mu and C. What is not free stays at its start.
+  PerDriveUnknown<bool> free{};
+  /// `[identify.start] mu = 1`: where the search begins; also the mean of the prior. NaN: by the vehicle's geometry,
+  /// see `with_geometry`.
+  PerDriveUnknown<double> start{};
+  /// `[identify.prior] steer_bias = "1 deg"`: standard deviation of what is known beforehand; infinite: nothing.
+  /// Defaults: steer_bias 1 deg, yaw_rate_bias 1 deg/s, accel_y_bias 0.5 m/s^2 (at one constant speed the three are
+  /// indistinguishable without), steer_scale and accel_y_scale 0.1, sideslip_bias 1 deg, delays 0.1 s, C 0.2, E 0.5;
+  /// NaN: by the geometry.
+  PerDriveUnknown<double> prior{};
+  /// `smoothing`: cut-off of the kernel through which inputs and outputs alike go before the comparison [Hz]. Noise of
+  /// the steering acts on the lateral acceleration at once (2 C_f/m times it), and what it adds to the slip angle's
+  /// power is taken off C_f: 1.3 % for 0.1 deg of white noise at 100 Hz on 0.9 deg rms of slip. 4 Hz leave a tenth of
+  /// that. 0: none; negative (the default): 4 Hz or a tenth of the rate, where the steering's noise is above 1e-4 of
+  /// the steering.
+  double smoothing_Hz = -1.0;
+  /// C_f, C_r and I_z are looked for between their start over this and times it; no key.
+  double search_factor = 1e3;
+  double gravity = kGravity;
+  /// Biases to which each segment adds a constant of its own, with their priors; no key.
+  std::vector<DriveUnknown> offsets = {};
+  double finer_steps = 1.0;  ///< how many times finer the integration steps than output error needs; no key
+
+  DriveModelOptions();
+  /// @throws InputError naming file, line and key.
+  void read_keys(const StudyTable& table);
+};
+
+/// The options with every start and prior a number. What was NaN is that of the vehicle: C_f, C_r, I_z and a its own;
+/// roll gradient 0.0089 +- 0.0045 rad/(m/s^2) (5 deg/g; where one is given, `roll_gradient` > 0, that within a fifth),
+/// roll frequency 10 rad/s +- 40 % on a wheelbase of 2.6 m (as the root of its inverse), damping ratio 0.3 +- 0.2, the
+/// centre of gravity 0.85 +- 0.25 of its height above the roll axis (roll axes lie up to 0.15 m above the road,
+/// Milliken & Milliken 1995, chapter 17), relaxation length 0.12 +- 0.06 of the wheelbase (0.3 m, Pacejka 2006, chapter
+/// 5), load transfer that of a rigid car, twice the height of the centre of gravity over the track, within a quarter.
+[[nodiscard]] DriveModelOptions with_geometry(DriveModelOptions options, const VehicleParameters<double>& vehicle,
+                                              double roll_gradient);
+
+/// The shortest relaxation length that is looked for, as a share of the wheelbase: a tenth of a metre.
+inline constexpr double kShortestRelaxation = 0.04;
+
+/// How late steering and outputs may be, either way [s]: a segment is driven by what was recorded so far around it.
+inline constexpr double kLongestDelay_s = 0.5;
+/// An unknown as the options have it, with the bounds between which it is searched.
+[[nodiscard]] estimation::ModelParameter model_parameter(DriveUnknown unknown, const DriveModelOptions& options,
+                                                         double wheelbase);
+
+/// The options with what a lateral velocity of course and heading leaves open, free where there is one (`by_course`).
+[[nodiscard]] DriveModelOptions with_course(DriveModelOptions options, bool by_course);
+
+/// The options for a structure, whose unknowns are free.
+[[nodiscard]] DriveModelOptions with_structure(DriveModelOptions options, DriveStructure structure);
+
+/// What is known of a road's bank before the data [rad]: crossfall and banked turns of public roads are 0.02 to 0.08.
+inline constexpr double kBankSigma = 0.06;
+/// And of downforce [s^2/m^2]: racing cars gain as much force as they have at rest at 35 to 70 m/s, 2e-4 to 8e-4.
+inline constexpr double kDownforceSigma = 5e-4;
+/// The options with these effects, whose unknowns are free, and no others.
+[[nodiscard]] DriveModelOptions with_effects(DriveModelOptions options, const DriveEffects& effects);
+
+}  // namespace veridyn::vehicle

@@ -1,0 +1,345 @@
+#include "veridyn/vehicle/identification/signals/drive_signals.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "veridyn/core/constants.hpp"
+#include "veridyn/core/error.hpp"
+#include "veridyn/numerics/statistics.hpp"
+#include "veridyn/vehicle/identification/signals/course_lateral_velocity.hpp"
+
+namespace veridyn::vehicle {
+namespace {
+
+bool holds_numbers(const Channel& channel) {
+  return std::any_of(channel.value.begin(), channel.value.end(), [](double v) { return std::isfinite(v); });
+}
+
+/// Interpolated where samples follow each other as usual: a drive is recorded by one clock.
+std::vector<double> on_grid(const Channel& channel, const numerics::UniformGrid& grid) {
+  return recording::on_grid(channel, grid, recording::Holes::kOfTheSensor);
+}
+
+/// The channel of a standard name; null: not recorded.
+const Channel* find_channel(const recording::MappedRecording& mapped, const char* name) {
+  const Channel* channel = mapped.recording.find(name);
+  if (channel != nullptr && !holds_numbers(*channel))
+    throw InputError(mapped.recording.source, fmt::format("channel {} holds no numeric values", name));
+  return channel;
+}
+
+/// Refuses a recording without a channel that nothing else can replace.
+void require_channel(const recording::MappedRecording& mapped, const char* name, const char* purpose) {
+  const std::vector<std::string> needed{name};
+  recording::require_channels(mapped, needed, purpose);
+}
+
+double noise_of(DriveSignal which, const Channel& channel, double scale, const DriveSignalOptions& options) {
+  const std::string_view name = kDriveSignalNames[which];
+  if (const std::optional<double> given = recording::given_noise(options.noise, name)) return *given;
+  return scale * recording::noise_floor(channel);
+}
+
+/// `scale` times a channel as the signal `which`.
+GridSignal signal_of(DriveSignal which, const Channel& channel, const numerics::UniformGrid& grid,
+                     const DriveSignalOptions& options, std::string origin, double scale = 1.0) {
+  GridSignal signal;
+  signal.value = on_grid(channel, grid);
+  for (double& v : signal.value) v *= scale;
+  signal.rate_Hz = channel.rate_Hz();
+  signal.origin = std::move(origin);
+  signal.sigma = noise_of(which, channel, std::abs(scale), options);
+  return signal;
+}
+
+/// The channel that carries the yaw rate, by whose samples the grid is laid.
+const Channel& yaw_rate_channel(const recording::MappedRecording& mapped) {
+  const Channel* channel = find_channel(mapped, "yaw_rate");
+  if (channel == nullptr) channel = find_channel(mapped, "gyro_z");
+  if (channel == nullptr) require_channel(mapped, "yaw_rate", "the lateral motion");
+  if (!(channel->rate_Hz() >= 5.0)) {
+    throw InputError(mapped.recording.source,
+                     fmt::format("its {} is sampled at {:.1f} Hz; the lateral motion of a vehicle needs at least 5 Hz",
+                                 channel->name, channel->rate_Hz()));
+  }
+  return *channel;
+}
+
+numerics::UniformGrid grid_of(const Channel& yaw_rate, const DriveSignalOptions& options, const std::string& source) {
+  const numerics::UniformGrid grid =
+      recording::grid_over(yaw_rate, recording::grid_rate(yaw_rate, options.rate_Hz), source);
+  if (grid.count < 2) throw InputError(source, fmt::format("its {} has no duration", yaw_rate.name));
+  return grid;
+}
+
+/// Empty where it is neither recorded nor needed.
+GridSignal steering(const recording::MappedRecording& mapped, const numerics::UniformGrid& grid,
+                    const DriveSignalOptions& options, bool needed) {
+  if (const Channel* steer = find_channel(mapped, "steer"))
+    return signal_of(DriveSignal::kSteer, *steer, grid, options, "steer");
+  if (const Channel* wheel = find_channel(mapped, "steering_wheel")) {
+    if (!(options.steering_ratio > 0.0)) {
+      throw InputError("signals.steering_ratio",
+                       "is missing: the recording has the angle of the hand wheel, which is that of the road wheels "
+                       "times this ratio (13 to 20 on most cars)");
+    }
+    return signal_of(DriveSignal::kSteer, *wheel, grid, options,
+                     fmt::format("steering_wheel / {:g}", options.steering_ratio), 1.0 / options.steering_ratio);
+  }
+  if (needed) require_channel(mapped, "steer", "the slip angles of the front wheels");
+  return {};
+}
+
+GridSignal forward_speed(const recording::MappedRecording& mapped, const numerics::UniformGrid& grid,
+                         const DriveSignalOptions& options) {
+  if (const Channel* speed = find_channel(mapped, "speed"))
+    return signal_of(DriveSignal::kSpeed, *speed, grid, options, "speed");
+  for (const bool rear : {true, false}) {
+    const Channel* left = find_channel(mapped, rear ? "wheel_velocity_rl" : "wheel_velocity_fl");
+    const Channel* right = find_channel(mapped, rear ? "wheel_velocity_rr" : "wheel_velocity_fr");
+    if (left == nullptr || right == nullptr) continue;
+    GridSignal signal = signal_of(DriveSignal::kSpeed, *left, grid, options,
+                                  rear ? "mean of the rear wheels" : "mean of the front wheels");
+    const std::vector<double> other = on_grid(*right, grid);
+    for (std::size_t k = 0; k < other.size(); ++k) signal.value[k] = 0.5 * (signal.value[k] + other[k]);
+    signal.sigma /= std::sqrt(2.0);
+    return signal;
+  }
+  for (const bool rear : {true, false}) {
+    const Channel* left = find_channel(mapped, rear ? "wheel_speed_rl" : "wheel_speed_fl");
+    const Channel* right = find_channel(mapped, rear ? "wheel_speed_rr" : "wheel_speed_fr");
+    if (left == nullptr || right == nullptr) continue;
+    if (!(options.rolling_radius > 0.0)) {
+      throw InputError("signals.rolling_radius",
+                       "is missing: the recording has wheel speeds, which need it to give the vehicle's speed");
+    }
+    GridSignal signal = signal_of(DriveSignal::kSpeed, *left, grid, options,
+                                  fmt::format("{} wheels x {:g} m", rear ? "rear" : "front", options.rolling_radius),
+                                  options.rolling_radius);
+    const std::vector<double> other = on_grid(*right, grid);
+    for (std::size_t k = 0; k < other.size(); ++k)
+      signal.value[k] = 0.5 * (signal.value[k] + options.rolling_radius * other[k]);
+    signal.sigma /= std::sqrt(2.0);
+    return signal;
+  }
+  require_channel(mapped, "speed", "the slip angles (wheel_speed_rl and wheel_speed_rr would do)");
+  return {};
+}
+
+/// A lateral acceleration, as far as gravity's share could be removed.
+struct LateralAcceleration {
+  GridSignal signal;
+  bool gravity_removed = false;
+};
+
+LateralAcceleration lateral_acceleration(const Channel& accel, const recording::MappedRecording& mapped,
+                                         const numerics::UniformGrid& grid, const DriveSignalOptions& options) {
+  GridSignal signal = signal_of(DriveSignal::kAccelY, accel, grid, options, "accel_y");
+  if (const Channel* roll = find_channel(mapped, "roll")) {
+    const std::vector<double> angle = on_grid(*roll, grid);
+    for (std::size_t k = 0; k < signal.value.size(); ++k) signal.value[k] -= options.gravity * std::sin(angle[k]);
+    signal.origin = "accel_y - g sin(roll)";
+    return {std::move(signal), true};
+  }
+  if (!(options.roll_gradient > 0.0)) return {std::move(signal), false};
+  const double gain = 1.0 / (1.0 + options.gravity * options.roll_gradient);
+  for (double& v : signal.value) v *= gain;
+  signal.sigma *= gain;
+  signal.origin = fmt::format("accel_y x {:.4f} (roll gradient)", gain);
+  return {std::move(signal), true};
+}
+
+/// v of the centre of gravity from speed u and yaw rate r on the grid; empty where nothing of it is recorded.
+GridSignal lateral_velocity(const recording::MappedRecording& mapped, const numerics::UniformGrid& grid,
+                            const DriveSignalOptions& options, const std::vector<double>& u,
+                            const std::vector<double>& r) {
+  GridSignal signal;
+  if (const Channel* v = find_channel(mapped, "lateral_velocity")) {
+    signal = signal_of(DriveSignal::kLateralVelocity, *v, grid, options, "lateral_velocity");
+  } else if (const Channel* beta = find_channel(mapped, "sideslip")) {
+    signal = signal_of(DriveSignal::kLateralVelocity, *beta, grid, options, "speed tan(sideslip)");
+    for (std::size_t k = 0; k < signal.value.size(); ++k) signal.value[k] = u[k] * std::tan(signal.value[k]);
+    signal.sigma *= numerics::median(u);
+  } else {
+    return signal;
+  }
+  if (options.velocity_position == 0.0) return signal;
+  for (std::size_t k = 0; k < signal.value.size(); ++k) signal.value[k] -= options.velocity_position * r[k];
+  signal.origin += fmt::format(", moved by {:g} m", -options.velocity_position);
+  return signal;
+}
+
+GridSignal heading(const Channel& yaw, const numerics::UniformGrid& grid, const DriveSignalOptions& options) {
+  Channel unwrapped = yaw;
+  numerics::unwrap_angles(unwrapped.value);
+  return signal_of(DriveSignal::kYaw, unwrapped, grid, options, "yaw");
+}
+
+/// Slope of y on x through the origin and their correlation, over samples where |x| is at least `least`.
+struct Relation {
+  double slope = 0.0;
+  double correlation = 0.0;
+  std::size_t count = 0;
+};
+Relation relate(const std::vector<double>& x, const std::vector<double>& y, double least) {
+  double xx = 0.0, xy = 0.0, yy = 0.0;
+  Relation relation;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    if (!(std::abs(x[k]) >= least) || !std::isfinite(y[k])) continue;
+    xx += x[k] * x[k];
+    xy += x[k] * y[k];
+    yy += y[k] * y[k];
+    ++relation.count;
+  }
+  if (relation.count > 0 && xx > 0.0 && yy > 0.0) {
+    relation.slope = xy / xx;
+    relation.correlation = xy / std::sqrt(xx * yy);
+  }
+  return relation;
+}
+
+/// Means over two seconds about each sample; NaN where one is missing.
+std::vector<double> two_second_means(const std::vector<double>& values, double step) {
+  const auto half = static_cast<std::size_t>(1.0 / step);
+  std::vector<double> out(values.size(), kNaN);
+  double sum = 0.0;
+  std::size_t filled = 0;  // finite samples up to the window's end
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (!std::isfinite(values[k])) {
+      sum = 0.0;
+      filled = 0;
+      continue;
+    }
+    sum += values[k];
+    ++filled;
+    const std::size_t window = 2 * half + 1;
+    if (filled > window) sum -= values[k - window];
+    if (filled >= window) out[k - half] = sum / static_cast<double>(window);
+  }
+  return out;
+}
+
+/// Refuses signals of opposite signs; what is doubtful comes back as a note.
+std::optional<std::string> check_signs(const DriveSignals& signals) {
+  const std::vector<double>& u = signals[DriveSignal::kSpeed].value;
+  const std::vector<double>& r = signals[DriveSignal::kYawRate].value;
+  std::vector<double> centripetal(r.size());
+  for (std::size_t k = 0; k < r.size(); ++k) centripetal[k] = u[k] * r[k];
+  constexpr double kLeast_mps2 = 0.5;
+  constexpr std::size_t kEnough = 50;
+  std::optional<std::string> note;
+  const GridSignal& accel = signals[DriveSignal::kAccelY];
+  if (accel.available()) {
+    // In quick transients a_y is not u r: the lateral velocity changes too.
+    const Relation relation = relate(two_second_means(centripetal, signals.grid.step),
+                                     two_second_means(accel.value, signals.grid.step), kLeast_mps2);
+    if (relation.count >= kEnough && relation.correlation < -0.5) {
+      throw InputError(signals.source,
+                       "accel_y goes against yaw_rate x speed: one of them points the other way (check data.frame, or "
+                       "give the channel scale = -1 in [data.map])");
+    }
+    if (relation.count >= kEnough && relation.correlation > 0.5 && !(relation.slope > 0.6 && relation.slope < 1.67)) {
+      note = fmt::format("accel_y is {:.2f} times yaw_rate x speed: a unit, a scale or the place of a sensor is wrong",
+                         relation.slope);
+    }
+  }
+  const GridSignal& steer = signals[DriveSignal::kSteer];
+  if (steer.available()) {
+    const Relation relation = relate(centripetal, steer.value, kLeast_mps2);
+    if (relation.count >= kEnough && relation.correlation < -0.7) {
+      throw InputError(signals.source,
+                       "steer goes against the yaw rate: one of them points the other way (left must be positive; "
+                       "check data.frame, or give the channel scale = -1 in [data.map])");
+    }
+  }
+  return note;
+}
+
+}  // namespace
+
+DriveSignalOptions DriveSignalOptions::read(const StudyTable& table) {
+  DriveSignalOptions o;
+  o.rate_Hz = table.has("rate") ? table.positive("rate", "Hz") : 0.0;
+  o.pass_Hz = table.has("pass_band") ? table.positive("pass_band", "Hz") : 0.0;
+  o.steering_ratio = table.has("steering_ratio") ? table.positive("steering_ratio", "1") : 0.0;
+  o.rolling_radius = table.has("rolling_radius") ? table.positive("rolling_radius", "m") : 0.0;
+  if (table.has("accel_position")) {
+    const std::vector<double> p = table.numbers("accel_position", "m");
+    if (p.size() != 3) table.fail("accel_position", fmt::format("has {} numbers; must have 3: x, y, z", p.size()));
+    std::copy(p.begin(), p.end(), o.accel_position.begin());
+  }
+  o.velocity_position = table.number_or("velocity_position", "m", 0.0);
+  o.roll_gradient = table.number_or("roll_gradient", "rad/(m/s^2)", 0.0);
+  if (!(o.roll_gradient >= 0.0 && o.roll_gradient < 0.1)) {
+    table.fail("roll_gradient",
+               fmt::format("= {:g} must be from 0 to 0.1 rad/(m/s^2) (5 deg per g is 0.0089)", o.roll_gradient));
+  }
+  o.gravity = table.positive_or("gravity", "m/s^2", o.gravity);
+  std::vector<recording::StandardChannel> channels;
+  for (std::size_t i = 0; i < kDriveSignals; ++i)
+    channels.push_back({std::string(kDriveSignalNames[i]), std::string(kDriveSignalUnits[i])});
+  o.noise = recording::read_noise(table.table_or_empty("noise"), channels);
+  return o;
+}
+
+DriveSignals prepare_drive_signals(const recording::MappedRecording& mapped, const DriveSignalOptions& options,
+                                   bool needs_steer) {
+  DriveSignals out;
+  out.source = mapped.recording.source;
+  out.accel_position = options.accel_position;
+  const Channel& yaw_rate = yaw_rate_channel(mapped);
+  out.grid = grid_of(yaw_rate, options, out.source);
+  const auto as = [&](DriveSignal which, const Channel& channel) {
+    return signal_of(which, channel, out.grid, options, channel.name);
+  };
+  out[DriveSignal::kYawRate] = as(DriveSignal::kYawRate, yaw_rate);
+  out[DriveSignal::kSteer] = steering(mapped, out.grid, options, needs_steer);
+  out[DriveSignal::kSpeed] = forward_speed(mapped, out.grid, options);
+  if (const Channel* accel = find_channel(mapped, "accel_x"))
+    out[DriveSignal::kAccelX] = as(DriveSignal::kAccelX, *accel);
+  if (const Channel* accel = find_channel(mapped, "accel_y")) {
+    LateralAcceleration lateral = lateral_acceleration(*accel, mapped, out.grid, options);
+    out[DriveSignal::kAccelY] = std::move(lateral.signal);
+    out.gravity_removed = lateral.gravity_removed;
+    if (find_channel(mapped, "roll") == nullptr) out.roll_gradient = options.roll_gradient;
+  } else {
+    out.notes.emplace_back("without accel_y, the stiffnesses are distinguishable by the yaw rate only in transients");
+  }
+  out[DriveSignal::kLateralVelocity] =
+      lateral_velocity(mapped, out.grid, options, out[DriveSignal::kSpeed].value, out[DriveSignal::kYawRate].value);
+  const Channel *course = find_channel(mapped, "course"), *direction = find_channel(mapped, "yaw");
+  if (course != nullptr && direction != nullptr && !out[DriveSignal::kLateralVelocity].available()) {
+    CourseLateralVelocity made = course_lateral_velocity({.course = *course,
+                                                          .yaw = *direction,
+                                                          .speed = out[DriveSignal::kSpeed].value,
+                                                          .yaw_rate = out[DriveSignal::kYawRate].value,
+                                                          .speed_sigma = out[DriveSignal::kSpeed].sigma,
+                                                          .yaw_rate_sigma = out[DriveSignal::kYawRate].sigma,
+                                                          .grid = out.grid,
+                                                          .position = options.velocity_position});
+    out.lateral_by_course = made.signal.available();
+    if (const auto given = recording::given_noise(options.noise, "lateral_velocity")) made.signal.sigma = *given;
+    out[DriveSignal::kLateralVelocity] = std::move(made.signal);
+    out.notes.push_back(std::move(made.note));
+  }
+  const Channel* x = find_channel(mapped, "pos_x");
+  const Channel* y = find_channel(mapped, "pos_y");
+  if (x != nullptr && y != nullptr) {
+    out[DriveSignal::kX] = as(DriveSignal::kX, *x);
+    out[DriveSignal::kY] = as(DriveSignal::kY, *y);
+  }
+  if (const Channel* roll = find_channel(mapped, "roll")) out[DriveSignal::kRoll] = as(DriveSignal::kRoll, *roll);
+  for (const char* name : {"roll_rate", "gyro_x"}) {
+    const Channel* rate = find_channel(mapped, name);
+    if (rate != nullptr && !out[DriveSignal::kRollRate].available())
+      out[DriveSignal::kRollRate] = as(DriveSignal::kRollRate, *rate);
+  }
+  if (const Channel* yaw = find_channel(mapped, "yaw")) out[DriveSignal::kYaw] = heading(*yaw, out.grid, options);
+  if (std::optional<std::string> note = check_signs(out)) out.notes.push_back(std::move(*note));
+  return out;
+}
+
+}  // namespace veridyn::vehicle

@@ -1,0 +1,95 @@
+#include "veridyn/vehicle/identification/structure/structure_doubt.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "veridyn/core/index.hpp"
+
+namespace veridyn::vehicle {
+namespace {
+
+/// By how much a doubt moves a parameter; 0 where it does not have it.
+double difference_of(const StructureDoubt& doubt, std::string_view parameter) {
+  for (const auto& [name, difference] : doubt.difference)
+    if (name == parameter) return difference;
+  return 0.0;
+}
+
+bool is_shown(const estimation::Parameter& p) { return p.name == "C_f" || p.name == "C_r" || p.name == "I_z"; }
+
+}  // namespace
+
+StructureDoubt structure_doubt(DriveStructure structure, double probability, const VehicleEstimate& other,
+                               const VehicleEstimate& taken) {
+  StructureDoubt doubt{.structure = structure, .probability = probability};
+  for (const estimation::Parameter& p : taken.parameters)
+    if (const estimation::Parameter* there = other.find(p.name))
+      doubt.difference.emplace_back(p.name, there->value - p.value);
+  return doubt;
+}
+
+VehicleEstimate with_doubt(VehicleEstimate estimate, std::span<const StructureDoubt> doubts, double significance) {
+  const auto n = signed_index(estimate.parameters.size());
+  const Eigen::VectorXd before = estimate.covariance.diagonal();
+  for (const StructureDoubt& doubt : doubts) {
+    Eigen::VectorXd difference(n);
+    for (Eigen::Index i = 0; i < n; ++i) difference(i) = difference_of(doubt, estimate.parameters[i].name);
+    estimate.covariance += doubt.probability * difference * difference.transpose();
+  }
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (!(before(i) > 0.0) || !std::isfinite(before(i))) continue;
+    estimation::widen(estimate.parameters[i], estimate.covariance(i, i) / before(i), estimate.degrees_of_freedom,
+                      significance);
+  }
+  return estimate;
+}
+
+double doubt_of(std::span<const StructureDoubt> doubts, std::string_view parameter) {
+  double variance = 0.0;
+  for (const StructureDoubt& doubt : doubts) {
+    const double difference = difference_of(doubt, parameter);
+    variance += doubt.probability * difference * difference;
+  }
+  return std::sqrt(variance);
+}
+
+std::optional<estimation::Evidence> doubt_row(std::span<const StructureDoubt> doubts, const VehicleEstimate& estimate) {
+  if (doubts.empty()) return std::nullopt;
+  // Of a parameter's standard error, which has it: half of its variance.
+  const double kLimit = std::sqrt(0.5);
+  std::vector<std::string> structures, named;
+  for (const StructureDoubt& doubt : doubts)
+    structures.push_back(
+        fmt::format("{} (probability {:.2g})", name_of(doubt.structure, doubt.effects), doubt.probability));
+  double largest = 0.0;
+  for (const estimation::Parameter& p : estimate.parameters) {
+    if (!is_shown(p) || !(p.sigma > 0.0)) continue;
+    const double doubt = doubt_of(doubts, p.name);
+    largest = std::max(largest, doubt / p.sigma);
+    if (doubt > kLimit * p.sigma)
+      named.push_back(fmt::format("{} by {:.1f} %", p.name, 100.0 * doubt / std::abs(p.value)));
+  }
+  const bool passed = named.empty();
+  estimation::Evidence row{.name = "doubt of the structure",
+                           .outcome = estimation::passed_or(passed, estimation::Outcome::kNotVerified),
+                           .value = largest,
+                           .limit = kLimit,
+                           .scale = "doubt over standard error",
+                           .bears_on = estimation::Purpose::kParameters};
+  row.text = fmt::format("the drive neither asks for nor excludes {}: ", fmt::join(structures, " and "));
+  row.text += passed ? "what that would change is within the standard errors, which have it"
+                     : fmt::format("most of the intervals is what that would change (one standard deviation): {}",
+                                   fmt::join(named, ", "));
+  if (!passed)
+    row.advice =
+        "drive livelier: faster steering (above 1 Hz) shows how tyres lag, harder cornering (above 3 m/s^2) how they "
+        "saturate";
+  return row;
+}
+
+}  // namespace veridyn::vehicle

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "veridyn/core/progress.hpp"
+#include "veridyn/estimation/judgement/unfinished_search.hpp"
+#include "veridyn/vehicle/identification/fit/vehicle_estimates.hpp"
+#include "veridyn/vehicle/identification/structure/tried_structure.hpp"
+
+namespace veridyn::vehicle {
+
+/// All structures that were tried, the simplest first, and which of them the data ask for.
+struct StructureLadder {
+  std::vector<TriedStructure> tried;
+  std::size_t chosen = 0;
+  DriveModelOptions model = {};  ///< of the chosen one
+  OutputErrorResult fit = {};    ///< of it, to the end
+  /// How late the recorded steering is where the model with roll is left free to say so.
+  std::optional<estimation::Parameter> steer_delay = {};
+  std::vector<StructureDoubt> doubts;  ///< what the structures that are left open would change
+  std::string reason;                  ///< one sentence; empty where the study fixes the structure
+  /// What an interruption kept it from; `fit` is the best that was there by then.
+  estimation::UnfinishedSearch unfinished = {};
+  [[nodiscard]] bool empty() const { return tried.empty(); }
+};
+
+/// Fits the structure that the study fixes, or all of them, each from where the one before it ended. Up to roll all are
+/// tried, however little the bicycle leaves: in a gentle drive a stiffness that is a tenth too low leaves no more than
+/// the sensors do. Where roll is likelier all are fitted again under the filter that whitens the roll's residual, and
+/// compared by that; if roll is taken still, so is what tyres do beside (relaxation, saturation). One that is not taken
+/// leaves a doubt, by its probability. A recording that contradicts itself (a failed row) says nothing of the
+/// structure: only the bicycle is fitted to it; nor is anything richer fitted to rounding errors. Interrupted, it takes
+/// the structure so of those whose fits had ended; of none, where the search of the first stood.
+[[nodiscard]] StructureLadder climb_structures(const VehicleProblem& problem,
+                                               const EquationErrorEstimates* equation_error, Progress& progress);
+
+}  // namespace veridyn::vehicle
