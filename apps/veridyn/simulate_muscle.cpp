@@ -12,6 +12,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/io/tables/csv.hpp"
+#include "veridyn/muscle/muscle_study.hpp"
 #include "veridyn/muscle/osim/external_loads_file.hpp"
 #include "veridyn/muscle/study/muscle_run.hpp"
 #include "veridyn/report/document/html.hpp"
