@@ -7,7 +7,7 @@ JOBS   ?= $(shell nproc)
 SHELL  := /bin/bash
 space  := $(subst ,, )
 
-.PHONY: help setup build demo test long docs format format-check tidy asan tsan bench fuzz soak install clean
+.PHONY: help setup build demo test long docs format format-check tidy asan asan-readers tsan bench fuzz soak nightly gcc install clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1|/' | column -t -s '|'
@@ -61,12 +61,22 @@ tidy: setup ## clang-tidy on every module; TIDY="veridyn/io" for one, TIDY="$(to
 	cmake --preset test --log-level=WARNING
 	tools/tidy.sh $(TESTED) $(JOBS) $(TIDY)
 
-ASAN_MODULES ?= core numerics estimation io camera recording aircraft vehicle muscle cueing live report apps
+# What reads bytes of strangers: whole modules, and folders of the others with test binaries of their own.
+READERS := core io recording camera live osim tyre road
+ASAN_MODULES ?= core numerics estimation io camera recording aircraft vehicle tyre road muscle osim cueing live report apps
+# One full run of each domain.
+ASAN_RUNS := example_several_flights|example_vehicle_identify_sweep|example_muscle_emg|example_cueing_knobs
 
 asan: setup ## tests of every module under the address and undefined-behaviour sanitizers; ASAN_MODULES="io" for one
 	cmake --preset asan --log-level=WARNING
 	cmake --build build/asan -j $(JOBS) --target $(ASAN_MODULES:%=veridyn_%_tests)
 	$(call run_tests,build/asan) -LE 'soak|long' -L '^($(subst $(space),|,$(ASAN_MODULES)))$$'
+
+asan-readers: setup ## the same for what reads files and packets of others, and one full run of each domain
+	cmake --preset asan --log-level=WARNING
+	cmake --build build/asan -j $(JOBS) --target $(READERS:%=veridyn_%_tests) veridyn
+	$(call run_tests,build/asan) -LE 'soak|long' -L '^($(subst $(space),|,$(READERS)))$$'
+	$(call run_tests,build/asan) -R '^($(ASAN_RUNS))$$'
 
 # What runs in threads beside each other, by module. The sanitizer's shadow memory wants addresses that are not shuffled.
 TSAN_MODULES ?= live numerics estimation io recording aircraft apps
@@ -99,6 +109,20 @@ soak: setup ## long-running campaigns (label soak), coverage of intervals
 	cmake --build $(BUILD) -j $(JOBS)
 	ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS) -L soak
 	examples/coverage/run.sh $(BUILD)/bin/veridyn out/coverage 10
+
+nightly: setup ## all that is too long for .ci/run: every test, module and check, an hour and more
+	$(MAKE) test
+	$(MAKE) long
+	$(MAKE) tidy
+	$(MAKE) asan
+	$(MAKE) tsan
+	$(MAKE) fuzz SECONDS_EACH=60
+	$(MAKE) gcc
+	$(MAKE) soak
+
+gcc: setup ## everything compiled by g++ with its warnings
+	cmake --preset gcc --log-level=WARNING
+	cmake --build build/gcc -j $(JOBS)
 
 install: build ## into PREFIX (default /usr/local)
 	cmake --install $(BUILD) $(if $(PREFIX),--prefix $(PREFIX))

@@ -150,21 +150,32 @@ function(veridyn_embed_texts output header namespace function)
   file(CONFIGURE OUTPUT ${output} CONTENT "${code}" @ONLY)
 endfunction()
 
-# veridyn_module_tests(NAME [DEPENDS ...] [WITHOUT a_test.cpp ...])
-# One test binary a module, veridyn_NAME_tests, of all sources below the folder; each suite of it is a test of CTest, NAME.Suite,
-# under the label NAME (VeridynSuites.cmake). Tests of their own are cases of suites named *Soak*, long-running campaigns under
-# the label `soak`, which `make soak` runs; those that tests/long_tests.txt names, label `NAME.long`, which `make long` runs
-# and the sanitizers do not; those that wait (tests/waiting_tests.txt), beside what takes one of the cores that `make test`
-# distributes; and those that nothing runs beside (tests/lone_tests.txt).
+# veridyn_module_tests(NAME [DEPENDS ...] [WITHOUT a_test.cpp ...] [SEPARATELY folder ...])
+# One test binary a module, veridyn_NAME_tests, of all sources below the folder, and one for each folder named SEPARATELY,
+# veridyn_FOLDER_tests: those of readers, which the sanitizers run without the rest of their module (READERS in the Makefile).
 function(veridyn_module_tests name)
-  cmake_parse_arguments(ARG "" "" "DEPENDS;WITHOUT" ${ARGN})
-  set(target veridyn_${name}_tests)
+  cmake_parse_arguments(ARG "" "" "DEPENDS;WITHOUT;SEPARATELY" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp)
   list(REMOVE_ITEM sources ${ARG_WITHOUT})
-  add_executable(${target} ${sources})
-  if(TARGET Veridyn::${name})
-    target_link_libraries(${target} PRIVATE Veridyn::${name})
-  endif()
+  foreach(folder IN LISTS ARG_SEPARATELY)
+    set(in_folder ${sources})
+    list(FILTER in_folder INCLUDE REGEX "^${folder}/")
+    list(FILTER sources EXCLUDE REGEX "^${folder}/")
+    veridyn_test_binary(${folder} DEPENDS Veridyn::${name} ${ARG_DEPENDS} SOURCES ${in_folder})
+  endforeach()
+  veridyn_test_binary(${name} DEPENDS $<TARGET_NAME_IF_EXISTS:Veridyn::${name}> ${ARG_DEPENDS} SOURCES ${sources})
+endfunction()
+
+# veridyn_test_binary(NAME SOURCES ... [DEPENDS ...])
+# veridyn_NAME_tests; each suite of it is a test of CTest, NAME.Suite, under the label NAME (VeridynSuites.cmake). Tests of their
+# own are cases of suites named *Soak*, long-running campaigns under the label `soak`, which `make soak` runs; those that
+# tests/long_tests.txt names, label `NAME.long`, which `make long` runs and the sanitizers do not; those that wait
+# (tests/waiting_tests.txt), beside what takes one of the cores that `make test` distributes; and those that nothing runs beside
+# (tests/lone_tests.txt).
+function(veridyn_test_binary name)
+  cmake_parse_arguments(ARG "" "" "DEPENDS;SOURCES" ${ARGN})
+  set(target veridyn_${name}_tests)
+  add_executable(${target} ${ARG_SOURCES})
   target_link_libraries(${target} PRIVATE ${ARG_DEPENDS} veridyn_test_build veridyn_test_main)
   target_precompile_headers(${target} REUSE_FROM veridyn_test_headers)
   veridyn_compile_together(${target})
@@ -187,7 +198,7 @@ function(veridyn_module_tests name)
 
   # What CTest reads after the tests of this folder.
   set(left_out *Soak*:${long}:${alone})
-  set(file ${CMAKE_CURRENT_BINARY_DIR}/test_resources.cmake)
+  set(file ${CMAKE_CURRENT_BINARY_DIR}/${target}_resources.cmake)
   file(CONFIGURE OUTPUT ${file} @ONLY CONTENT [[
 foreach(test IN LISTS @target@_alone @target@_long)
   if(test MATCHES "@lone_names@")

@@ -112,10 +112,10 @@ Summary summary_of(const VirtualCar& car) {
 
 /// Says what the car does, once for each change.
 void say_state(const CommonOptions& options, const VirtualCar& car, CarState& said, double time) {
-  constexpr std::array<const char*, kCarStates> kNames = {"holding", "driving", "braking: the link is lost"};
+  constexpr std::array<const char*, kCarStates> kStateNames = {"holding", "driving", "braking: the link is lost"};
   if (car.actuation().state == said) return;
   said = car.actuation().state;
-  print_line(options, fmt::format("{:8.2f} s  {}", time, kNames[static_cast<std::size_t>(said)]));
+  print_line(options, fmt::format("{:8.2f} s  {}", time, kStateNames[static_cast<std::size_t>(said)]));
 }
 
 int rig_car(const Arguments& arguments) {

@@ -115,7 +115,7 @@ std::string headline(const MuscleStudy& study, const MuscleResult& result) {
 int simulate_muscle(const StudyRun& run) {
   OutputFolder folder(run.options().out);
   TerminalProgress progress = progress_of(run.options());
-  const MuscleStudy muscles = read_study(run.study, progress);
+  const MuscleStudy muscles = muscle::read_study(run.study, progress);
   // Nothing here is random yet; the run record names the seed all the same.
   const auto seed = static_cast<std::uint64_t>(run.study.root().integer_or("seed", 1));
   const MuscleResult result = run_study(muscles, progress);
