@@ -16,11 +16,11 @@ namespace veridyn::test {
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    const testing::UnitTest& tests = *testing::UnitTest::GetInstance();
+    const ::testing::UnitTest& tests = *::testing::UnitTest::GetInstance();
     std::string name = "veridyn_";
     // Neither is known where a suite is set up outside of its tests.
-    if (const testing::TestSuite* suite = tests.current_test_suite()) name += std::string(suite->name()) + "_";
-    if (const testing::TestInfo* info = tests.current_test_info()) name += std::string(info->name()) + "_";
+    if (const ::testing::TestSuite* suite = tests.current_test_suite()) name += std::string(suite->name()) + "_";
+    if (const ::testing::TestInfo* info = tests.current_test_info()) name += std::string(info->name()) + "_";
     std::replace(name.begin(), name.end(), '/', '_');
     std::string pattern = (std::filesystem::temp_directory_path() / (name + "XXXXXX")).string();
     if (::mkdtemp(pattern.data()) == nullptr)
