@@ -10,7 +10,7 @@ packages=(
   clang-14 clang-format-14 clang-format clang-tidy-14 clang-tidy libclang-rt-14-dev
   chromium doxygen openmpi-bin
 )
-# The report's plots need Node 20.19 or later, wherever it comes from; Debian's 18 gives a report without them.
+# The report's plots need Node 18 or later, wherever it comes from; Debian's will do.
 if ! command -v node >/dev/null || ! command -v npm >/dev/null; then packages+=(nodejs npm); fi
 
 missing=()

@@ -9,12 +9,12 @@ function(veridyn_embed_report out)
   find_program(NPM_EXECUTABLE npm)
   find_program(NODE_EXECUTABLE node)
   if(NOT NPM_EXECUTABLE OR NOT NODE_EXECUTABLE)
-    message(FATAL_ERROR "The report's front end needs node (20.19 or newer) and npm; install them or configure with -DVERIDYN_WEB=OFF")
+    message(FATAL_ERROR "The report's front end needs node (18 or newer) and npm; install them or configure with -DVERIDYN_WEB=OFF")
   endif()
   set(copy ${PROJECT_BINARY_DIR}/web)
   set(install_files package.json package-lock.json .npmrc)
   file(GLOB_RECURSE build_files RELATIVE ${VERIDYN_WEB_SOURCE} CONFIGURE_DEPENDS ${VERIDYN_WEB_SOURCE}/src/*)
-  list(APPEND build_files report.html tsconfig.json vite.config.js)
+  list(APPEND build_files report.html tsconfig.json build.mjs)
 
   set(install_copies)
   foreach(file IN LISTS install_files)
@@ -42,7 +42,7 @@ function(veridyn_embed_report out)
     COMMAND ${CMAKE_COMMAND} -E rm -rf ${copy}/src ${copy}/dist
     COMMAND ${CMAKE_COMMAND} -E make_directory ${copy}/src/plots
     ${copies}
-    COMMAND ${NPM_EXECUTABLE} run build --silent -- --logLevel warn
+    COMMAND ${NPM_EXECUTABLE} run build --silent
     DEPENDS ${copy}/packages.stamp ${sources}
     WORKING_DIRECTORY ${copy}
     COMMENT "Building the report's front end"

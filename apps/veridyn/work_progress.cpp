@@ -95,8 +95,8 @@ WorkProgress::WorkProgress(const StudyRun& run, OutputFolder* folder)
 }
 
 void WorkProgress::stage(std::string_view name) {
-  TerminalProgress::stage(name);
   quiet_stage(name);
+  TerminalProgress::stage(name);  // whoever reads it there finds it in the file
 }
 
 void WorkProgress::quiet_stage(std::string_view name) {

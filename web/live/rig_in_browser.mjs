@@ -1,14 +1,13 @@
 // Programs of the virtual rig, and a page of theirs in headless Chromium, for the tests of the pages.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
-import { existsSync, mkdtempSync, rmSync } from 'node:fs';
+import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { chromium } from 'playwright-core';
+import { no_browser, start_browser } from '../tests/chromium.mjs';
 
-const executablePath = process.env.CHROMIUM ?? '/usr/bin/chromium';
 /** Why the tests cannot run here, or false. */
-export const skip = existsSync(executablePath) ? false : `no Chromium at ${executablePath}`;
+export const skip = no_browser;
 if (skip) console.log(skip);
 
 export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
@@ -32,6 +31,20 @@ export function run(...words) {
   processes.push(p);
   return p;
 }
+/** Stops a program as soon as it says this, for as long as no SIGCONT comes: what is to be seen then stays. */
+export function held_where_it_says(program, words) {
+  return new Promise((done, failed) => {
+    const look = () => {
+      if (!program.said.includes(words)) return;
+      program.stderr.off('data', look);
+      program.kill('SIGSTOP');
+      done();
+    };
+    program.stderr.on('data', look);
+    program.on('exit', () => failed(new Error(`it ended without saying "${words}": ${program.said}`)));
+    look();
+  });
+}
 /** The token of a page, from what its program says when it starts. */
 export async function token_of(program) {
   let token;
@@ -43,17 +56,18 @@ export async function token_of(program) {
   return token;
 }
 export async function open_page(address) {
-  browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--disable-gpu', '--no-first-run'] });
+  browser = await start_browser();
   page = await browser.newPage({ viewport: { width: 1300, height: 860 } });
   await page.goto(address);
   return page;
 }
-/** Waits until the page shows this. */
-export async function shows(selector, wanted, ms = 20000) {
-  const end = Date.now() + ms;
+/** Waits until the page shows this: a minute, on a machine that computes much else. */
+export async function shows(selector, wanted) {
+  const end = Date.now() + 60000;
   let text = '';
   while (Date.now() < end) {
-    text = (await page.textContent(selector).catch(() => '')) ?? '';
+    // What is there now: textContent() would wait half a minute for an element that has gone.
+    [text = ''] = await page.locator(selector).allTextContents();
     if (wanted.test(text)) return text;
     await sleep(50);
   }

@@ -1,11 +1,11 @@
 // `veridyn serve` in headless Chromium: a live run of the virtual rig is followed by its recording and stopped from the page, then
 // looked back at; progress of an identification is shown while it computes.
-//   node --test serve_page.mjs     VERIDYN=the program, STUDY=live.toml, WORK=posterior_arm.toml, whose stages last long enough to be seen
+//   node --test serve_page.mjs     VERIDYN=the program, STUDY=live.toml, WORK=posterior_arm.toml
 import assert from 'node:assert/strict';
 import { mkdirSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { end_all, make_folder, open_page, overrides, run, shows, skip, sleep, token_of } from './rig_in_browser.mjs';
+import { end_all, held_where_it_says, make_folder, open_page, overrides, run, shows, skip, sleep, token_of } from './rig_in_browser.mjs';
 
 const port = 35000 + 3 * (process.pid % 5000);
 const sets = overrides(
@@ -15,7 +15,6 @@ const sets = overrides(
   'live.signs=while',
   'live.soft_start=1',
   'live.rate=500',
-  'drive.duration=30',
 );
 let page, folder, token, rig;
 
@@ -37,17 +36,17 @@ after(end_all);
 
 test('a run is found as it begins and followed as its recording grows', { skip }, async () => {
   await shows('#state', /running/);
-  const first = await clock();
-  await sleep(2000);
-  const passed = (await clock()) - first;
-  assert.ok(passed > 1.2 && passed < 2.8, `${passed} s of the run in 2 s`);
-  // Evenly, not in the blocks in which it is written.
-  const seen = new Set();
-  for (let k = 0; k < 20; ++k) {
-    seen.add(await page.textContent('#clock'));
-    await sleep(50);
+  // As fast as time, and evenly, not in the blocks in which it is written: in one stretch at least, since a machine that computes
+  // other things may hold it up.
+  const followed = ({ rate, moments, looks }) => rate > 0.6 && rate < 1.4 && moments > 0.4 * looks;
+  const stretches = [];
+  for (let k = 0; k < 5 && !stretches.some(followed); ++k) {
+    const [begun, first, seen] = [Date.now(), await clock(), new Set()];
+    let looks = 0;
+    for (; Date.now() < begun + 2000 || looks < 10; await sleep(50), ++looks) seen.add(await page.textContent('#clock'));
+    stretches.push({ rate: (1000 * ((await clock()) - first)) / (Date.now() - begun), moments: seen.size, looks });
   }
-  assert.ok(seen.size > 8, [...seen].join());
+  assert.ok(stretches.some(followed), `seconds of the run a second, moments seen in so many looks: ${JSON.stringify(stretches)}`);
   assert.equal(await page.isVisible('#start'), false);
 });
 
@@ -59,12 +58,15 @@ test('any moment of it can be looked at again while it goes on', { skip }, async
   await shows('#state', /parked/);
   await shows('#why', /looking back/);
   await page.click('#play');
-  await shows('#state', /soft start/);
   await shows('#state', /running/);
   await page.click('#now');
-  await sleep(300);
-  const [at, length] = (await page.textContent('#clock')).match(/[0-9.]+/g).map(Number);
-  assert.ok(length - at < 1.2, `${at} of ${length}`);
+  let behind = Infinity;
+  for (let k = 0; k < 100 && !(behind < 1.2); ++k) {
+    await sleep(100);
+    const [at, length] = (await page.textContent('#clock')).match(/[0-9.]+/g).map(Number);
+    behind = length - at;
+  }
+  assert.ok(behind < 1.2, `${behind} s behind`);
 });
 
 test('the emergency stop needs the token, and then stops the run', { skip }, async () => {
@@ -73,7 +75,7 @@ test('the emergency stop needs the token, and then stops the run', { skip }, asy
   await shows('#why', /1 control refused/);
   await page.fill('#token', token);
   await page.click('#stop');
-  await shows('#state', /stopped/, 3000);
+  await shows('#state', /stopped/);
   rig.kill('SIGINT');
   await rig.ended;
   await shows('#why', /this run is over/);
@@ -81,15 +83,17 @@ test('the emergency stop needs the token, and then stops the run', { skip }, asy
 });
 
 test('the progress of an identification is shown while it computes', { skip }, async () => {
-  const identify = run('identify', process.env.WORK, '--quiet', '--out', join(folder, 'identify'));
+  // A short one, held where the page is looked at: however slow the machine, the page need not keep up with it.
+  const identify = run('identify', process.env.WORK, '--set', 'identify.posterior.steps=20', '--threads', '1', '--out', join(folder, 'identify'));
   const work = '.work:has-text("identify")';
-  await shows(`${work} .head`, /posterior_arm.toml: goes on/);
-  const stages = new Set();
-  while (identify.exitCode === null) {
-    stages.add(await page.textContent(`${work} .stage`).catch(() => ''));
-    await sleep(20);
+  for (const [stage, number] of [['estimating 3 parameters', 4], ['posterior of 3 parameters', 5]]) {
+    await held_where_it_says(identify, stage);
+    await shows(`${work} .stage`, new RegExp(`${stage}.* stage ${number}`));
+    await shows(`${work} .head`, /posterior_arm.toml: goes on/);
+    assert.equal(await page.locator(`${work} progress`).count(), 1);
+    identify.kill('SIGCONT');
   }
-  assert.equal(identify.exitCode, 0, identify.said);
-  assert.ok(stages.size > 3, [...stages].join('; '));
+  assert.equal(await identify.ended, 0, identify.said);
   await shows(`${work} .head`, /: done/);
+  assert.equal(await page.locator(`${work} .stage`).count(), 0);
 });

@@ -5,18 +5,13 @@ import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { after, before } from 'node:test';
 import { pathToFileURL } from 'node:url';
-import { chromium } from 'playwright-core';
+import { no_browser, start_browser } from './chromium.mjs';
 
-const executablePath = process.env.CHROMIUM ?? '/usr/bin/chromium';
 export const sample = resolve(process.env.VERIDYN_SAMPLE_REPORT ?? 'sample_report.html');
-const missing = !existsSync(executablePath)
-  ? `no Chromium at ${executablePath}`
-  : !existsSync(sample)
-    ? `no sample report at ${sample}: run veridyn_sample_report and set VERIDYN_SAMPLE_REPORT`
-    : false;
-if (missing) console.log(missing);
 // A missing browser is a reason to skip, a missing report is a failure.
-export const skip = missing && missing.startsWith('no Chromium') ? missing : false;
+export const skip = no_browser;
+if (no_browser) console.log(no_browser);
+else if (!existsSync(sample)) console.log(`no sample report at ${sample}: run veridyn_sample_report and set VERIDYN_SAMPLE_REPORT`);
 
 /** A browser for the tests of a suite. */
 export function with_browser() {
@@ -24,18 +19,7 @@ export function with_browser() {
 
   before(async () => {
     state.folder = mkdtempSync(join(tmpdir(), 'veridyn-page-'));
-    state.browser = await chromium.launch({
-      executablePath,
-      args: [
-        '--no-sandbox',
-        '--disable-gpu',
-        '--disable-quic',
-        '--no-first-run',
-        '--disable-background-networking',
-        '--disable-component-update',
-        '--disable-sync',
-      ],
-    });
+    state.browser = await start_browser();
   });
 
   after(async () => {
