@@ -46,9 +46,13 @@ target_compile_options(
 target_link_options(veridyn_build INTERFACE $<$<BOOL:${VERIDYN_SANITIZE}>:-fsanitize=address,undefined>
                     $<$<BOOL:${VERIDYN_SANITIZE_THREAD}>:-fsanitize=thread>)
 
-# Headers that nearly every source needs, precompiled once for the library and once for the tests. They must be built with the
-# flags of those who use them: GCC takes the level of optimisation from the precompiled header, whatever the command line says,
-# so sources with a level of their own do without it (veridyn_optimise).
+# Headers that nearly every source needs, precompiled once for the library and once for the tests. GCC takes the level of
+# optimisation from the precompiled header, whatever the command line says: there, sources with a level of their own do without
+# it (veridyn_optimise).
+set(own_level_without_headers OFF)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  set(own_level_without_headers ON)
+endif()
 # veridyn_precompiled(TARGET [POSITION_INDEPENDENT] LIBRARIES lib ... HEADERS <a.hpp> ...)
 function(veridyn_precompiled target)
   cmake_parse_arguments(ARG "POSITION_INDEPENDENT" "" "LIBRARIES;HEADERS" ${ARGN})
@@ -64,10 +68,10 @@ veridyn_precompiled(
   HEADERS <fmt/format.h> <fmt/ranges.h> <Eigen/Dense> <algorithm> <filesystem> <functional> <map> <memory> <optional> <string> <vector>)
 
 # veridyn_optimise(a.cpp ...)
-# Sources whose loops over small matrices have to be unrolled: -O3, without the precompiled header (see above). The check
+# Sources whose loops over small matrices have to be unrolled: -O3. The check
 # `build.OptimisedSources` of the tests reads the flags that the compiler really used.
 function(veridyn_optimise)
-  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "$<$<CONFIG:Release>:-O3>" SKIP_PRECOMPILE_HEADERS ON)
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "$<$<CONFIG:Release>:-O3>" SKIP_PRECOMPILE_HEADERS ${own_level_without_headers})
   list(TRANSFORM ARGN PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
   set_property(GLOBAL APPEND PROPERTY VERIDYN_OPTIMISED_SOURCES ${ARGN})
 endfunction()
@@ -77,7 +81,7 @@ endfunction()
 # splits them into vectors that the next one has to wait for (twice as slow, GCC 12). Inlined they take two thirds of the time.
 function(veridyn_inline)
   set_source_files_properties(
-    ${ARGN} PROPERTIES SKIP_PRECOMPILE_HEADERS ON COMPILE_OPTIONS
+    ${ARGN} PROPERTIES SKIP_PRECOMPILE_HEADERS ${own_level_without_headers} COMPILE_OPTIONS
     "$<$<CXX_COMPILER_ID:GNU>:-finline-limit=2000;--param=inline-unit-growth=1000;--param=max-inline-insns-auto=400;--param=large-function-growth=1000>")
 endfunction()
 
