@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "veridyn/muscle/muscle_study.hpp"
 #include "veridyn/muscle/study/muscle_run.hpp"
 
 namespace veridyn::report::test {
