@@ -120,10 +120,10 @@ def check_muscle(comparison, label, shoulder_deg, length, arm, tolerances, known
     for k in known:
         inside = (shoulder_deg > k.low) & (shoulder_deg < k.high)
         rest &= ~inside
-        where = f"{label} from {k.low:g} to {k.high:g} deg ({k.why})"
+        where = f"{label} from {k.low:g} to {k.high:g} deg"
         comparison.within(f"{where}: length [m]", length[inside].max(), k.length)
         comparison.within(f"{where}: shoulder arm [m]", arm[inside, 0].max(), k.arm)
-        assert k.length <= LENGTH or length[inside].max() > 0.5 * k.length, f"{where}: no longer so"
+        assert k.length <= LENGTH or length[inside].max() > 0.5 * k.length, f"{where}: no longer so: {k.why}"
     comparison.within(f"{label}: length [m]", length[rest].max(), tolerances[0])
     comparison.within(f"{label}: shoulder arm [m]", arm[rest, 0].max(), tolerances[1])
     comparison.within(f"{label}: elbow arm [m]", arm[:, 1].max(), tolerances[2])
