@@ -40,7 +40,7 @@ class OurLog:
     def __init__(self, path):
         text = veridyn("inspect", path, "--values")
         lines = text[text.index("time[s]") :]
-        self.table = pandas.read_csv(io.StringIO(lines), float_precision="round_trip", low_memory=False)
+        self.table = pandas.read_csv(io.StringIO(lines), low_memory=False)
         self.table.columns = [name[: name.rindex("[")] for name in self.table.columns]
         self.time = self.table["time"].to_numpy()
         summary = json.loads(veridyn("inspect", path, "--json"))

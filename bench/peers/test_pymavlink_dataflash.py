@@ -17,16 +17,19 @@ from program import shared_file
 pytestmark = pytest.mark.peer("pymavlink")
 
 # What describes the log itself makes no channels.
-SCHEMA = {"FMT", "UNIT", "MULT", "FMTU", "PARM"}
+SCHEMA = {"FMT", "UNIT", "MULT", "FMTU", "PARM", "VER", "FILE"}
 SCALED_BY_FORMAT = "cCeEL"
 TEXTS = "nNZ"
+# Stamps by the names of their columns; they are the rows' time and no channels.
+STAMPS = {"TimeUS": 1e-6, "TimeMS": 1e-3}
 
 
 class Topic:
     """All messages of a type that pymavlink gave out, by column."""
 
-    def __init__(self, format_):
+    def __init__(self, format_, instance):
         self.format = format_
+        self.instance = instance  # the column that numbers instances, which stand in the names
         self.rows = []
 
     def column(self, i):
@@ -43,6 +46,14 @@ def instance_column(format_, unit_ids):
     return None
 
 
+def stamp_of(format_, values, before):
+    """Of a message [s]; one without a stamp has that of the message before it."""
+    for name, unit in STAMPS.items():
+        if name in format_.columns:
+            return unit * values[format_.columns.index(name)]
+    return before
+
+
 def read(path):
     """Topics by their names with instances, and by type the multiplier of each column."""
     log = DFReader.DFReader_binary(str(path))
@@ -51,14 +62,14 @@ def read(path):
     while (message := log.recv_msg()) is not None:
         kind = message.get_type()
         if kind == "MULT":
-            multipliers[chr(message.Id)] = float(f"{message.Mult:.7g}")
+            # A factor of 0 stands for fields that have none.
+            multipliers[chr(message.Id)] = float(f"{message.Mult:.7g}") or 1.0
         elif kind == "FMTU":
             formats[message.FmtType] = (message.UnitIds, message.MultIds)
         if kind not in SCHEMA:
             values = [getattr(message, name) for name in message.fmt.columns]
             rows[kind].append((message.fmt, values, now))
-        if "TimeUS" in message.fmt.columns:
-            now = 1e-6 * message.TimeUS
+        now = stamp_of(message.fmt, [getattr(message, name) for name in message.fmt.columns], now)
     topics = {}
     for kind, messages in rows.items():
         for format_, values, time in messages:
@@ -66,8 +77,7 @@ def read(path):
             i = instance_column(format_, unit_ids)
             number = values[i] if i is not None else 0
             name = f"{kind}[{number}]" if number else kind
-            stamp = 1e-6 * values[format_.columns.index("TimeUS")] if "TimeUS" in format_.columns else time
-            topics.setdefault(name, Topic(format_)).rows.append([stamp, *values])
+            topics.setdefault(name, Topic(format_, i)).rows.append([stamp_of(format_, values, time), *values])
     scales = {type_: [multipliers.get(c, 1.0) for c in ids[1]] for type_, ids in formats.items()}
     return topics, scales
 
@@ -81,7 +91,7 @@ def compare(path, comparison):
         scale_of = scales.get(topic.format.type, [])
         for i, (field, character) in enumerate(zip(topic.format.columns, topic.format.format, strict=True)):
             channel = f"{name}.{field}"
-            if character in TEXTS or isinstance(topic.rows[0][i + 1], str):
+            if character in TEXTS or field in STAMPS or i == topic.instance:
                 continue
             assert channel in ours.units, f"{channel} is not read"
             values = topic.column(i + 1)[order]
@@ -98,8 +108,8 @@ def compare(path, comparison):
     assert set(ours.units) - compared == set(), "channels that pymavlink does not have"
     samples = sum(ours.samples[c] for c in compared)
     assert samples > 0
-    # Two roundings of a product on each side.
-    comparison.within(f"{path.name}: {len(compared)} channels, {samples} values, relative", worst, 1e-15 * 4)
+    # Two roundings of each product.
+    comparison.within(f"{path.name}: {len(compared)} channels, {samples} values, relative", worst, 5e-16)
 
 
 @pytest.mark.parametrize("name", ["center_0003.bin", "pymavlink_test.BIN", "test_log_pilot_position.BIN"])

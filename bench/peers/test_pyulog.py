@@ -17,6 +17,10 @@ pytestmark = pytest.mark.peer("pyulog")
 SCALES = {"lat": 1e-7, "lon": 1e-7, "alt": 1e-3, "alt_ellipsoid": 1e-3}
 
 
+# Rows that the program leaves out, and says so, since their stamps are off: here one of 1194 s in 27 s.
+DROPPED = {("sample_log_small.ulg", "mission"): 1}
+
+
 def scale_of(topic, field):
     return SCALES.get(field, 1.0) if topic in ("vehicle_gps_position", "sensor_gps") else 1.0
 
@@ -30,7 +34,10 @@ def compare(path, comparison):
         prefix = f"{data.name}[{data.multi_id}]" if data.multi_id else data.name
         stamps = 1e-6 * data.data["timestamp"].astype(float)
         order = numpy.argsort(stamps, kind="stable")
+        order = order[: len(order) - DROPPED.get((path.name, prefix), 0)]
         for field, raw in data.data.items():
+            if field == "timestamp":
+                continue
             channel = f"{prefix}.{field}"
             assert channel in ours.units, f"{channel} is not read"
             values = raw[order].astype(float) * scale_of(data.name, field)
@@ -38,14 +45,14 @@ def compare(path, comparison):
             expected[~numpy.isfinite(expected)] = numpy.nan
             found = ours.at(channel, stamps[order])
             assert (numpy.isnan(found) == numpy.isnan(expected)).all(), f"{channel}: other samples are numbers"
-            assert ours.samples[channel] == len(stamps), f"{channel}: {ours.samples[channel]} of {len(stamps)} samples"
+            assert ours.samples[channel] == len(order), f"{channel}: {ours.samples[channel]} of {len(order)} samples"
             size = numpy.maximum(numpy.abs(expected), 1e-12)
             worst = max(worst, numpy.nanmax(numpy.abs(found - expected) / size, initial=0.0))
             compared.add(channel)
     assert set(ours.units) - compared == set(), "channels that pyulog does not have"
     samples = sum(ours.samples[c] for c in compared)
-    # Two roundings of a product on each side.
-    comparison.within(f"{path.name}: {len(compared)} channels, {samples} values, relative", worst, 4e-15)
+    # Two roundings of each product.
+    comparison.within(f"{path.name}: {len(compared)} channels, {samples} values, relative", worst, 5e-16)
 
 
 @pytest.mark.parametrize("name", ["sample_log_small.ulg", "sample_appended_multiple.ulg"])
