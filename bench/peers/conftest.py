@@ -44,7 +44,7 @@ def pytest_report_teststatus(report):
 
 
 def pytest_report_header():
-    return f"veridyn: {veridyn('--version').splitlines()[0]}, {PROGRAM}"
+    return f"veridyn {veridyn('--version').strip()}: {PROGRAM}"
 
 
 class Comparison:

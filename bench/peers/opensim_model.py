@@ -38,7 +38,9 @@ class OpenSimModel:
 
     def couplers(self):
         constraints = self.model.getConstraintSet()
-        found = (opensim.CoordinateCouplerConstraint.safeDownCast(constraints.get(i)) for i in range(constraints.getSize()))
+        found = (
+            opensim.CoordinateCouplerConstraint.safeDownCast(constraints.get(i)) for i in range(constraints.getSize())
+        )
         return [coupler for coupler in found if coupler is not None]
 
     def led(self):
@@ -92,7 +94,6 @@ class OpenSimModel:
         self.model.realizeVelocity(self.state)
         forces = opensim.InverseDynamicsSolver(self.model).solve(self.state, accelerations)
         return numpy.array([forces.get(index) for index in self.speed_index])
-
 
     def default_pose(self):
         return {name: c.getDefaultValue() for name, c in zip(self.names, self.coordinates, strict=True)}

@@ -15,7 +15,7 @@ SHARED = ROOT.parent / "shared"
 
 
 def veridyn(*arguments):
-    """What the program prints on stdout; its messages are those of the failure when it ends with another code than 0."""
+    """What the program prints on stdout; where it ends with another code than 0, its messages are the failure's."""
     done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, check=False)
     assert done.returncode == 0, f"veridyn {' '.join(map(str, arguments))}\n{done.stderr}"
     return done.stdout

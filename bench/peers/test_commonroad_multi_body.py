@@ -90,8 +90,8 @@ def steady_multi_body(car, steer):
 
 
 def without_camber():
-    """Its tyres shift by the sign of their camber, 0.0027 rad and 4 % of the load at once as the body begins to lean: no
-    tyre of ours does."""
+    """Its tyres shift by the sign of their camber, 0.0027 rad and 4 % of the load at once as the body begins to lean,
+    which no tyre of ours does."""
     car = copy.deepcopy(CAR)
     for name in ("p_hy1", "p_hy3", "p_vy1", "p_vy3"):
         setattr(car.tire, name, 0.0)

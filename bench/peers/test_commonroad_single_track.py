@@ -109,8 +109,8 @@ def test_slow_bicycle_is_the_kinematic_one(speed, tmp_path, comparison):
     rear = CAR.m * CAR.a * speed * ours["yaw_rate"] / (2.0 * (CAR.a + CAR.b) * stiffnesses()[1])
     slip = math.atan2(ours["lateral_velocity"], speed)
     label = f"kinematic, {speed:.0f} m/s"
-    # That is for small steering angles; this one is 0.1, of which the cosine is 0.5 % off 1: so much of the slip angles,
-    # m v r b/(2 L C) and its like, is not balanced.
+    # That is for small steering angles; this one is 0.1, of which the cosine is 0.5 % off 1: so much of the slip
+    # angles, m v r b/(2 L C) and its like, is not balanced.
     left = 0.01 * CAR.m * speed**2 / (4.0 * (CAR.a + CAR.b) * stiffnesses()[1])
     comparison.within(f"{label}: yaw rate, relative", abs(ours["yaw_rate"] / theirs - 1.0), 2.0 * left)
     comparison.within(f"{label}: slip angle [rad]", abs(slip - (kinematic - rear)), 0.006 * rear)
@@ -144,9 +144,12 @@ PKY2 = 1
 
 
 def write_tyres(folder):
-    """CommonRoad's lateral Magic Formula as files: at the nominal load and with PKY2 = 1 the stiffness is PKY1 FNOMIN."""
+    """CommonRoad's lateral Magic Formula as files: at the nominal load, with PKY2 = 1, the stiffness is PKY1 FNOMIN."""
     for name, load in zip(("front", "rear"), static_loads(), strict=True):
-        values = {n: float(getattr(CAR.tire, n)) for n in ("p_cx1", "p_dx1", "p_ex1", "p_kx1", "p_cy1", "p_dy1", "p_ey1", "p_ky1")}
+        values = {
+            n: float(getattr(CAR.tire, n))
+            for n in ("p_cx1", "p_dx1", "p_ex1", "p_kx1", "p_cy1", "p_dy1", "p_ey1", "p_ky1")
+        }
         (folder / f"{name}.tir").write_text(TYRE.format(R_w=CAR.R_w, load=load, **values))
     return '[subject.tyres]\nfront = "front.tir"\nrear = "rear.tir"'
 
@@ -189,7 +192,9 @@ def test_steady_turns_are_those_of_the_drift_model(steer, all_terms, tmp_path, c
         their_rate, their_slip = steady_drift(car, steer, speed)
         label = f"drift, {20.0 * rate:.1f} m/s^2, {what}"
         comparison.within(f"{label}: yaw rate, relative", abs(rate / their_rate - 1.0), tolerance)
-        comparison.within(f"{label}: slip angle, of the steering angle", abs(slip - their_slip) / steer, 2.0 * tolerance)
+        comparison.within(
+            f"{label}: slip angle, of the steering angle", abs(slip - their_slip) / steer, 2.0 * tolerance
+        )
 
 
 def test_a_small_step_is_that_of_the_drift_model(tmp_path, comparison):
@@ -199,4 +204,6 @@ def test_a_small_step_is_that_of_the_drift_model(tmp_path, comparison):
     theirs = integrate(vehicle_dynamics_std, start, motion)
     size = numpy.abs(theirs[5]).max()
     comparison.within("drift, small step: speed lost, relative", 1.0 - theirs[3][-1] / 20.0, 2e-3)
-    comparison.within("drift, small step: yaw rate, of the largest", numpy.abs(motion["yaw_rate"] - theirs[5]).max() / size, 5e-3)
+    comparison.within(
+        "drift, small step: yaw rate, of the largest", numpy.abs(motion["yaw_rate"] - theirs[5]).max() / size, 5e-3
+    )

@@ -93,7 +93,9 @@ def test_loads_of_the_file_are_those_of_the_flight(flight, tmp_path, comparison)
 ANGLES = ("alpha", "beta", "roll", "pitch")
 RATES = ("gyro_x", "gyro_y", "gyro_z")
 # JSBSim's integrators: Adams-Bashforth of order 4 for rates and positions; its own are of order 1 for rotations.
-INTEGRATORS = [f"simulation/integrator/{what}/{of}" for what in ("rate", "position") for of in ("rotational", "translational")]
+INTEGRATORS = [
+    f"simulation/integrator/{what}/{of}" for what in ("rate", "position") for of in ("rotational", "translational")
+]
 ADAMS_BASHFORTH_4 = 5
 
 

@@ -22,7 +22,6 @@ def test_forces_of_random_states_are_the_same(name, tmp_path, comparison):
     table = columns_of(veridyn("inspect", path, "--pose", tmp_path / "states.csv"))
     ours = numpy.array([table[f"{c}.force"] for c in model.names]).T
     theirs = numpy.array([model.inverse_dynamics(*state) for state in zip(q, qdot, qddot, strict=True)])
-    # Relative to the largest force of the coordinate; both are sums of the same terms in another order, and joints of
-    # splines have second derivatives of them.
+    # Relative to the largest force of the coordinate: both are sums of the same terms in another order.
     difference = (numpy.abs(ours - theirs) / numpy.abs(theirs).max(axis=0)).max()
     comparison.within(f"{name}: inverse dynamics, relative", difference, 1e-12)

@@ -41,7 +41,9 @@ TAUT = [
     Known("TRIlong", 30.4, 41.7, 1.9e-3, 1.2e-2, "ours lets go bit by bit; OpenSim's path jumps off at 41.65 deg"),
     Known("TRIlong", 41.7, 44.0, LENGTH, 4.1e-3, "ours has not quite let go"),
     Known("TRIlong", 61.5, 64.2, LENGTH, 2e-3, "OpenSim's slope is not its work, by as much"),
-    Known("TRIlong", 64.2, 144.7, 8e-3, 4e-2, "over two objects OpenSim stops at changes of 0.5 mm, and its path jumps"),
+    Known(
+        "TRIlong", 64.2, 144.7, 8e-3, 4e-2, "over two objects OpenSim stops at changes of 0.5 mm, and its path jumps"
+    ),
     Known("BIClong", -86.0, -79.6, LENGTH, 3e-3, "beside a spike of OpenSim's length; its work is ours"),
     Known("BIClong", -79.6, -78.1, 9e-4, ANY, "OpenSim's length has a spike"),
     Known("BIClong", -78.1, -76.0, LENGTH, 1.1e-2, "beside a spike of OpenSim's length; its work is ours"),

@@ -28,8 +28,8 @@ formulation = "{formulation}"
 
 
 def at_rest_at_both_ends(time):
-    """From 0 to 1 in a second, with velocity, acceleration and jerk zero at the ends. A jerk that jumps there, as that of
-    the minimum-jerk motion, is rounded in two ways by the two splines."""
+    """From 0 to 1 in a second, with velocity, acceleration and jerk zero at the ends. A jerk that jumps there, as that
+    of the minimum-jerk motion, is rounded in two ways by the two splines."""
     s = numpy.clip(time, 0.0, 1.0)
     return s**4 * (35.0 - 84.0 * s + 70.0 * s**2 - 20.0 * s**3)
 
@@ -45,8 +45,8 @@ def ours(folder, path, reserves, formulation, paths, rate):
 
 @pytest.mark.parametrize("physiology", [True, False])
 def test_an_elbow_flexion_has_opensims_activations(physiology, tmp_path, comparison):
-    # Activations of 0..1, reserves of 1 N m at control 1. OpenSim's optimiser ends at a change of 1e-8 of its cost, whose
-    # square root is 1e-4 of an activation. Taut paths have other moment arms, by up to 0.4 mm in this motion.
+    # Activations of 0..1, reserves of 1 N m at control 1. OpenSim's optimiser ends at a change of 1e-8 of its cost,
+    # whose square root is 1e-4 of an activation. Taut paths have other moment arms, by up to 0.4 mm in this motion.
     path = shared_file("data/opensim/arm26.osim")
     time = numpy.linspace(-0.5, 1.5, 401)
     shoulder, elbow = numpy.zeros_like(time), 0.5 * numpy.pi * at_rest_at_both_ends(time)
