@@ -7,7 +7,7 @@ JOBS   ?= $(shell nproc)
 SHELL  := /bin/bash
 space  := $(subst ,, )
 
-.PHONY: help setup build demo test long docs format format-check tidy asan asan-readers tsan bench fuzz soak nightly gcc install clean
+.PHONY: help setup build demo test long docs format format-check tidy asan asan-readers tsan bench peers bench-peers fuzz soak nightly gcc install clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1|/' | column -t -s '|'
@@ -98,6 +98,15 @@ bench: setup ## benchmarks; results in build/bench/*.json
 	cmake --preset bench --log-level=WARNING
 	cmake --build build/bench -j $(JOBS)
 	tools/bench.sh build/bench
+
+# One comparison: make peers PEERS="-k ulog".
+peers: setup ## comparisons with OpenSim, JSBSim, pymavlink and others (bench/peers); skipped without a package index
+	cmake --preset test --log-level=WARNING
+	cmake --build $(TESTED) -j $(JOBS) --target veridyn
+	VERIDYN_PROGRAM=$(CURDIR)/$(TESTED)/bin/veridyn tools/peers.sh pytest -p no:cacheprovider -q bench/peers $(PEERS)
+
+bench-peers: build ## times of these programs and ours, in one run; build/peers/bench.json
+	tools/peers.sh python bench/peers/bench_peers.py build/peers/bench.json
 
 fuzz: setup ## each reader under libFuzzer for SECONDS_EACH (60)
 	cmake --preset asan --log-level=WARNING

@@ -8,6 +8,7 @@
 #include "veridyn/aircraft/sensors/channel_map.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/read.hpp"
+#include "veridyn/io/tables/csv.hpp"
 #include "veridyn/recording/drive_axis_check.hpp"
 #include "veridyn/recording/ros_topics.hpp"
 #include "veridyn/recording/study_data.hpp"
@@ -145,6 +146,10 @@ int inspect(const Arguments& arguments) {
   const io::LogDamage damage = log.damage;
   const std::size_t topics = log.topics.size();
   const Recording recording = io::to_recording(std::move(log));
+  if (arguments.flag("--values")) {
+    print_text(io::to_csv(recording));
+    return kDone;
+  }
   const bool vehicle = is_of_vehicle(recording);
   const recording::MappedRecording mapped = vehicle ? vehicle::map_drive_channels(recording, StudyTable("data.map"))
                                                     : aircraft::map_channels(recording, StudyTable("data.map"), {});
@@ -221,12 +226,17 @@ Command inspect_command() {
             .required = true},
            {.name = "--events", .help = "list flight modes and messages", .value = false},
            {.name = "--parameters", .help = "list the autopilot's parameters", .value = false},
+           {.name = "--values",
+            .help =
+                "of a log: print every channel as CSV instead, in SI; a row a stamp, empty where a channel has none",
+            .value = false},
            {.name = "--pose",
             .help = "of a model: print muscle lengths, moment arms and generalised forces as CSV, for the poses of "
                     "a .csv, .mot or .sto file or for one pose 'elbow_flexion=90 deg,...'"},
            {.name = "--as-opensim", .help = "with --pose: wrap paths as OpenSim does, jumps included", .value = false}},
       .example =
-          "veridyn inspect flight.bin\n  veridyn inspect drive.csv\n  veridyn inspect drive.txt --set "
+          "veridyn inspect flight.bin\n  veridyn inspect flight.bin --values > flight.csv\n  veridyn inspect "
+          "drive.csv\n  veridyn inspect drive.txt --set "
           "data.time.column=clock\n  veridyn inspect arm26.osim\n  veridyn inspect "
           "arm --pose "
           "\"elbow_flexion=90 deg\"",

@@ -258,6 +258,10 @@ TEST_F(Program, IdentifiesARecordingWrittenByItself) {
   const Outcome inspected = run("inspect " + (folder_ / "recording.csv").string());
   EXPECT_EQ(inspected.exit_code, 0);
   EXPECT_THAT(inspected.text, HasSubstr("gyro_x"));
+  // A table of ours is what its values are printed as.
+  const Outcome values = run("inspect " + (folder_ / "recording.csv").string() + " --values");
+  EXPECT_EQ(values.exit_code, 0);
+  EXPECT_EQ(values.text, read_file(folder_ / "recording.csv"));
   const Outcome identified = run("identify " + from_file + " --out " + (folder_ / "out").string());
   ASSERT_EQ(identified.exit_code, 0) << identified.text;
   EXPECT_THAT(identified.text, HasSubstr("Cm is identified"));

@@ -28,7 +28,10 @@ struct Expression {
 Expression value(double number) { return {"value", fmt::format("{:.17g}", number), {}}; }
 Expression property(std::string name) { return {"property", std::move(name), {}}; }
 Expression operation(const char* name, std::vector<Expression> arguments) { return {name, {}, std::move(arguments)}; }
-Expression product(std::vector<Expression> a) { return operation("product", std::move(a)); }
+// JSBSim warns of a product of one factor.
+Expression product(std::vector<Expression> a) {
+  return a.size() == 1 ? std::move(a.front()) : operation("product", std::move(a));
+}
 Expression sum(std::vector<Expression> a) { return operation("sum", std::move(a)); }
 Expression difference(Expression a, Expression b) { return operation("difference", {std::move(a), std::move(b)}); }
 Expression quotient(Expression a, Expression b) { return operation("quotient", {std::move(a), std::move(b)}); }
