@@ -97,7 +97,7 @@ TEST(CorrelatedNoiseModel, GivesTheEstimateAndErrorBarOfGeneralisedLeastSquares)
     EXPECT_NEAR(e.theta(i), theta(i), 1e-8);
     EXPECT_NEAR(e.covariance_white(i, i), P(i, i), 1e-8 * P(i, i));
   }
-  EXPECT_LT((white.restored(0, e.predicted[0]) - S(Eigen::seqN(0, 1), Eigen::all) * theta).row(0).norm(), 1e-8);
+  EXPECT_LT((white.restored(0, e.predicted[0]).row(0) - S.row(0) * theta).norm(), 1e-8);
   ModelResponse own;
   ASSERT_TRUE(model.respond(0, e.theta, {}, own));
   EXPECT_LT((white.restored(0, e.predicted[0]) - own.output).cwiseAbs().maxCoeff(), 1e-10);

@@ -165,9 +165,10 @@ TEST(FourWheelSimulation, HasATwinAtOneFifthWithGravityScaled) {
     EXPECT_NEAR(model.heave[k] / length, full.heave[k], 1e-9);
     EXPECT_NEAR(model.Fz[0][k] / (mass * length), full.Fz[0][k], 1e-9 * 1e4);
   }
-  // With the gravity of the Earth the same model behaves differently: it is not tilted as much, never lifts.
+  // With the gravity of the Earth the same model behaves differently: its springs, soft as the mass is small, do not
+  // hold the weight that is five times theirs, and it tips over in the first bend.
   const auto on_earth = drive(linear_car(twin(p, length, mass)), reference_steer, {.speed = 4.0});
-  EXPECT_GT(std::abs(on_earth.roll[1000] - full.roll[1000]), 0.01);
+  EXPECT_EQ(on_earth.end, SimulationEnd::kRolledOver);
 }
 
 TEST(FourWheelSimulation, StopsWhenInterruptedAndKeepsWhatItHas) {

@@ -68,14 +68,14 @@ void read_wraps_of(Context& context, const Element& body_element, int body) {
       wrap.dimensions.x() = element.positive_or("radius", -1.0);
     } else if (type == "WrapCylinder") {
       wrap.shape = WrapShape::kCylinder;
-      wrap.dimensions << element.positive_or("radius", -1.0), element.positive_or("length", 1.0), 0.0;
+      wrap.dimensions = {element.positive_or("radius", -1.0), element.positive_or("length", 1.0), 0.0};
     } else if (type == "WrapEllipsoid") {
       wrap.shape = WrapShape::kEllipsoid;
       wrap.dimensions = element.vector_or("dimensions", Eigen::Vector3d::Constant(-1.0));
       if (!(wrap.dimensions.minCoeff() > 0.0)) element.fail("dimensions", "all three radii must be > 0");
     } else if (type == "WrapTorus") {
       wrap.shape = WrapShape::kTorus;
-      wrap.dimensions << element.positive_or("inner_radius", -1.0), element.positive_or("outer_radius", -1.0), 0.0;
+      wrap.dimensions = {element.positive_or("inner_radius", -1.0), element.positive_or("outer_radius", -1.0), 0.0};
     } else {
       context.unsupported(element, true);
       continue;
