@@ -352,7 +352,7 @@ TEST_F(IdentifyCheckpoint, MpirunGivesTheSameBytes) {
       ASSERT_EQ(done.exit_code, 0) << done.text;
       for (const char* name : {"estimate.json", "parameters.csv", "tasks.csv", "model.osim"})
         EXPECT_EQ(read_file(in_out(name)), read_file(folder_ / "alone" / name)) << name << ", " << size;
-      EXPECT_EQ(times(done.text, "wrote "), 1U) << done.text;
+      EXPECT_EQ(times(done.text, "report: "), 1U) << done.text;
       forget();
     }
   }

@@ -13,7 +13,7 @@ command -v mpirun >/dev/null || skip "there is no mpirun (package openmpi-bin)"
 # Whoever runs in a container may be root without the right to.
 here=veridyn-$$-a there=veridyn-$$-b
 ip netns add "$here" 2>/dev/null || skip "network namespaces cannot be made here"
-work=$(mktemp -d) aside=$(mktemp -d -p /var/tmp)
+work=$(mktemp -d) aside=$(mktemp -d)
 trap 'ip netns del "$here"; ip netns del "$there" 2>/dev/null || true; rm -rf "$work" "$aside"' EXIT
 ip netns add "$there"
 ip -n "$here" link add veridyn0 type veth peer name veridyn0 netns "$there"
@@ -24,15 +24,15 @@ for machine in "$here" "$there"; do
   ip -n "$machine" link set veridyn0 up
 done
 
-# The remote shell: `agent ADDRESS COMMAND...`. The folders of the first machine are not those of the second: there /tmp is
-# an empty one, and what is in the working folder in the end is listed for this script.
+# The remote shell: `agent ADDRESS COMMAND...`. The working folder of the second machine is an empty one of its own; what is
+# there in the end is listed for this script.
 cat >"$aside/agent" <<END
 #!/bin/sh
 shift
 exec ip netns exec $there unshare --mount --uts sh -c '
   hostname veridyn-b
   exec 3>>$aside/left
-  mount -t tmpfs tmpfs /tmp && mkdir -p $work && cd $work || exit 1
+  mount -t tmpfs tmpfs $work && cd $work || exit 1
   sh -c "\$*"
   code=\$?
   find $work -mindepth 1 >&3

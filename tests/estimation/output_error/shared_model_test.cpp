@@ -5,7 +5,9 @@
 #include <array>
 #include <atomic>
 #include <bit>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "tests/estimation/output_error/example_models.hpp"
 #include "tests/support/thread_ranks.hpp"
@@ -46,6 +48,9 @@ class SharedModelTest : public ::testing::Test {
   void share(const Ranks& ranks, const First& first) {
     SharedWork work(ranks, 7, 1, [&](std::span<const double> request, std::vector<double>& reply) {
       ++computed_[ranks.rank()];
+      // However busy the machine is: the first leaves something to the others.
+      for (int i = 0; i < 10000 && ranks.first() && computed_[1] + computed_[2] == 0; ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
       SharedModel::responses_of(model_)(request, reply);
     });
     if (!ranks.first()) return static_cast<void>(work.serve());
@@ -67,7 +72,7 @@ TEST_F(SharedModelTest, ASearchComesToTheSameBitsOnAnyNumberOfProcesses) {
     });
     EXPECT_EQ(found, expected) << size;
   }
-  EXPECT_GT(computed_[1], 0);
+  EXPECT_GT(computed_[1] + computed_[2], 0);
 }
 
 TEST_F(SharedModelTest, PassesOnDerivativesAndRunsThatDidNotFinish) {
