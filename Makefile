@@ -81,8 +81,8 @@ asan-readers: setup ## the same for what reads files and packets of others, and 
 # What runs in threads beside each other, by module. The sanitizer's shadow memory wants addresses that are not shuffled.
 TSAN_MODULES ?= live numerics estimation io recording aircraft apps
 TSAN_live := TripleBuffer.*:LiveLoop*:RunningLoop*:LivePage*:LiveRecorder*:*Teleoperation*:*PseudoTerminal*
-TSAN_numerics := ParallelFor*:BlockStore*:Heartbeat*:ValueLog*
-TSAN_estimation := Smoother*:OpenLoop*:BatchEvaluator*:*NumberOfThreads*:*UsesTheThreads*
+TSAN_numerics := ParallelFor*:BlockStore*:Ranks*:SharedWork*:ValueLog*
+TSAN_estimation := Smoother*:OpenLoop*:BatchEvaluator*:SharedModel*:*NumberOfThreads*:*UsesTheThreads*
 TSAN_io := PlainRows*
 TSAN_recording := SampleEvidence*:StudyData*
 TSAN_aircraft := OpenLoop.IsTheSame*:BatchExperiment.IsTheSame*:FlightSensitivity.IsTheSame*:Reconstruct.GivesTheSame*:ModelFreeEngine*:RecordingEvidence.OfAClean*:AircraftStudy.IdentifiesWhat*

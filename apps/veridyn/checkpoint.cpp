@@ -12,6 +12,8 @@
 #include "apps/veridyn/launcher.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/numerics/batches/fingerprint.hpp"
+#include "veridyn/numerics/ranks/shared_work.hpp"
 
 namespace veridyn::app {
 namespace {
@@ -34,26 +36,38 @@ numerics::ProcessShare parse_shard(const std::string& text) {
 }
 
 /// One thread for each processor that this process may use, unless the user says how many.
-void choose_threads(const LaunchedProcess& process, bool talks, CommonOptions& options) {
+void choose_threads(const LaunchedProcess& process, CommonOptions& options) {
   const int fair = threads_of(process);
   const auto machine = static_cast<int>(std::thread::hardware_concurrency());
-  if (talks && process.size > 1 && options.threads > fair)
+  if (process.size > 1 && options.threads > fair)
     print_line(options, fmt::format("note: {} threads for each of {} processes on this machine, of {} processors",
                                     options.threads, process.on_machine, machine));
   if (options.threads == 0 && fair < machine) options.threads = fair;
 }
 
-void share_among(const LaunchedProcess& process, Checkpoint& checkpoint) {
-  if (checkpoint.folder.empty() && checkpoint.first)
-    throw InputError("--checkpoint",
-                     fmt::format("is missing: {} processes under {} share their work in a folder that all "
-                                 "of them see",
-                                 process.size, process.launcher));
-  checkpoint.share = {.index = process.rank, .count = process.size, .wait = true};
-  CommonOptions& options = checkpoint.options;
-  if (checkpoint.first) return;
-  options.quiet = true;
-  options.json = false;
+/// What the results of a run follow from, by name.
+numerics::BlockStore::Identity identity_of(const StudyRun& run, const std::vector<std::filesystem::path>& inputs) {
+  numerics::BlockStore::Identity identity = {{"program", program_name()}, {"command", run.command}};
+  for (const std::filesystem::path& input : inputs)
+    identity.emplace_back("file", fmt::format("{} {}", input.filename().string(), sha1_of(input)));
+  const std::string study = run.study.to_toml();
+  for (std::size_t from = 0; from < study.size();) {
+    const std::size_t end = std::min(study.find('\n', from), study.size());
+    if (end > from) identity.emplace_back("study", study.substr(from, end - from));
+    from = end + 1;
+  }
+  return identity;
+}
+
+/// Each process reads the study for itself, maybe on another machine: all must have read the same.
+void require_same_identity(const numerics::Ranks& ranks, const numerics::BlockStore::Identity& identity) {
+  if (ranks.alone()) return;
+  numerics::Fingerprint key;
+  for (const auto& [name, value] : identity) {
+    key.add(name);
+    key.add(value);
+  }
+  numerics::require_same(ranks, key.value());
 }
 
 }  // namespace
@@ -61,7 +75,7 @@ void share_among(const LaunchedProcess& process, Checkpoint& checkpoint) {
 std::vector<Argument> checkpoint_arguments() {
   return {
       {.name = "--checkpoint",
-       .help = "keep finished work in this folder, go on from what is there, share it between processes",
+       .help = "keep finished work in this folder, and go on from what is there",
        .type = "FOLDER"},
       {.name = "--shard", .help = "compute only every N-th block from the I-th on, where it is missing", .type = "I/N"},
       {.name = "--merge",
@@ -69,23 +83,16 @@ std::vector<Argument> checkpoint_arguments() {
        .value = false}};
 }
 
-std::vector<Argument> search_checkpoint_arguments() {
-  return {
-      {.name = "--checkpoint",
-       .help = "of a person's tasks: keep finished simulations in this folder, go on from what is there, share them "
-               "between processes",
-       .type = "FOLDER"},
-      {.name = "--shard",
-       .help = "of a person's tasks, without mpirun: this is the I-th of N processes that are started together and "
-               "share the simulations",
-       .type = "I/N"}};
+Argument search_checkpoint_argument() {
+  return {.name = "--checkpoint",
+          .help = "of a person's tasks: keep finished simulations in this folder, and go on from what is there",
+          .type = "FOLDER"};
 }
 
 Checkpoint checkpoint_of(const Arguments& arguments) {
   const LaunchedProcess process = launched_process();
-  Checkpoint checkpoint{
-      .folder = arguments.text("--checkpoint"), .first = process.rank == 0, .options = arguments.common};
-  const std::string& shard = arguments.text("--shard");
+  Checkpoint checkpoint{.folder = arguments.text("--checkpoint"), .options = arguments.common};
+  const std::string shard = arguments.given("--shard") ? arguments.text("--shard") : "";
   const bool merge = arguments.given("--merge");
   if (merge && !shard.empty()) throw InputError("--merge", "computes nothing, --shard a part; choose one of them");
   const std::string part = merge ? "--merge" : "--shard";
@@ -95,17 +102,10 @@ Checkpoint checkpoint_of(const Arguments& arguments) {
                                          process.size, process.launcher));
     if (checkpoint.folder.empty()) throw InputError(part, "needs --checkpoint with the folder that all parts share");
     checkpoint.share = merge ? numerics::ProcessShare{.count = 0} : parse_shard(shard);
-  } else if (process.size > 1) {
-    share_among(process, checkpoint);
   }
-  choose_threads(process, checkpoint.first, checkpoint.options);
-  return checkpoint;
-}
-
-Checkpoint search_checkpoint_of(const Arguments& arguments) {
-  Checkpoint checkpoint = checkpoint_of(arguments);
-  checkpoint.share.wait = checkpoint.share.count > 1;
-  checkpoint.first = checkpoint.share.index == 0;
+  // The first process alone keeps what all have computed.
+  if (!checkpoint.first()) checkpoint.folder.clear();
+  choose_threads(process, checkpoint.options);
   return checkpoint;
 }
 
@@ -124,39 +124,19 @@ int Checkpoint::stopped(const numerics::BlockStore& store) const {
 
 numerics::BlockStore open_store(const Checkpoint& checkpoint, const StudyRun& run,
                                 const std::vector<std::filesystem::path>& inputs) {
-  if (checkpoint.folder.empty()) return {};
-  numerics::BlockStore::Identity identity = {{"program", program_name()}, {"command", run.command}};
-  for (const std::filesystem::path& input : inputs)
-    identity.emplace_back("file", fmt::format("{} {}", input.filename().string(), sha1_of(input)));
-  const std::string study = run.study.to_toml();
-  for (std::size_t from = 0; from < study.size();) {
-    const std::size_t end = std::min(study.find('\n', from), study.size());
-    if (end > from) identity.emplace_back("study", study.substr(from, end - from));
-    from = end + 1;
-  }
-  return {checkpoint.folder, identity, checkpoint.share};
+  const numerics::Ranks& ranks = checkpoint.options.ranks;
+  if (checkpoint.folder.empty() && ranks.alone()) return {};
+  const numerics::BlockStore::Identity identity = identity_of(run, inputs);
+  require_same_identity(ranks, identity);
+  if (checkpoint.folder.empty()) return numerics::BlockStore(ranks);
+  return {checkpoint.folder, identity, checkpoint.share, ranks};
 }
 
 std::unique_ptr<numerics::ValueLog> open_value_log(const Checkpoint& checkpoint, const StudyRun& run,
-                                                   const std::vector<std::filesystem::path>& inputs,
-                                                   const Progress& progress) {
-  if (checkpoint.folder.empty()) return nullptr;
-  // Only who is of the same study and version may come in; this process shows by the log that it lives.
-  Checkpoint entrance = checkpoint;
-  entrance.share.wait = false;
-  const numerics::BlockStore identity = open_store(entrance, run, inputs);
-  return std::make_unique<numerics::ValueLog>(checkpoint.folder, checkpoint.share,
-                                              [&progress] { return progress.interrupted(); });
-}
-
-bool runs_alone(std::string_view command) {
-  const LaunchedProcess process = launched_process();
-  if (process.size > 1 && process.rank == 0)
-    throw InputError(std::string(command),
-                     fmt::format("runs in one process for this study, {} were started under {}; --threads takes the "
-                                 "processors of one machine",
-                                 process.size, process.launcher));
-  return process.size == 1;
+                                                   const std::vector<std::filesystem::path>& inputs) {
+  // Only who is of the same study and version may come in.
+  const numerics::BlockStore identity = open_store(checkpoint, run, inputs);
+  return checkpoint.folder.empty() ? nullptr : std::make_unique<numerics::ValueLog>(checkpoint.folder);
 }
 
 }  // namespace veridyn::app

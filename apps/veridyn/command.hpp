@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "veridyn/core/interruption.hpp"
+#include "veridyn/numerics/ranks/ranks.hpp"
 
 namespace veridyn::app {
 
@@ -33,6 +34,7 @@ struct CommonOptions {
   bool quiet = false;                  ///< --quiet
   bool json = false;                   ///< --json: a machine-readable summary on stdout
   Interruption interruption;           ///< Ctrl-C
+  numerics::Ranks ranks;               ///< the processes that a launcher started together; only the first talks
 };
 
 /// A text, a repeatable text, a number or a flag.
@@ -85,6 +87,7 @@ struct Command {
   std::string example = {};
   std::function<int(const Arguments&)> run = {};  ///< returns the exit code
   std::vector<Command> commands = {};             ///< `init aircraft`; a command with commands has no `run`
+  bool shares_work = false;                       ///< several processes of a launcher may run it together
 };
 
 // Each command is made in the file of its name.

@@ -9,12 +9,14 @@
 #include <charconv>
 #include <cmath>
 #include <csignal>
+#include <functional>
 #include <iostream>
 #include <limits>
 #include <new>
 #include <optional>
 
 #include "apps/veridyn/console.hpp"
+#include "apps/veridyn/launcher.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
@@ -151,13 +153,13 @@ NamedCommand find_command(std::span<const Command> commands, std::span<const std
 }
 
 /// Options of a command that earlier versions called otherwise get their names, with a note.
-void rename_options(const Command& command, std::vector<std::string>& words) {
+void rename_options(const Command& command, std::vector<std::string>& words, bool talks) {
   for (const Argument& argument : command.arguments) {
     if (argument.old_name.empty()) continue;
     for (std::string& word : words) {
       if (word != argument.old_name && !word.starts_with(argument.old_name + "=")) continue;
       word.replace(0, argument.old_name.size(), argument.name);
-      fmt::print(stderr, "note: {} is now called {}\n", argument.old_name, argument.name);
+      if (talks) fmt::print(stderr, "note: {} is now called {}\n", argument.old_name, argument.name);
     }
   }
 }
@@ -177,28 +179,77 @@ std::string explained(const CLI::ParseError& error, const CLI::App& program, con
   return fmt::format("there is no option {}{}", word, suggestion(word, names));
 }
 
-int parse_and_run(std::span<const Command> commands, const Interruption& interruption, std::vector<std::string> words) {
+/// The options of a command as one of several processes has them: only the first talks.
+void set_ranks(const numerics::Ranks& ranks, const Command& command, CommonOptions& options) {
+  options.ranks = ranks;
+  if (!ranks.alone() && !command.shares_work)
+    throw InputError(command.name, fmt::format("runs in one process, {} were started", ranks.size()));
+  if (ranks.first()) return;
+  options.quiet = true;
+  options.json = false;
+}
+
+int parse_and_run(std::span<const Command> commands, const Interruption& interruption, const numerics::Ranks& ranks,
+                  std::vector<std::string> words) {
   CLI::App program("veridyn: from recorded motion to a dynamic model you can trust", "veridyn");
   program.set_version_flag("--version", std::string(version()));
   program.require_subcommand(1);
   Chosen chosen;
   for (const Command& command : commands) add_command(program, command, chosen);
   const NamedCommand named = find_command(commands, words);
-  if (named.command != nullptr) rename_options(*named.command, words);
+  if (named.command != nullptr) rename_options(*named.command, words, ranks.first());
   try {
     std::reverse(words.begin(), words.end());  // as CLI11 takes them
     program.parse(words);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0)
       throw InputError(named.name.empty() ? "command line" : named.name, explained(error, program, named));
+    if (!ranks.first()) return kDone;
     program.exit(error);
     if (!std::cout.flush()) throw std::runtime_error("stdout: cannot be written");
     return kDone;
   }
   chosen.arguments->common.interruption = interruption;
+  set_ranks(ranks, *chosen.command, chosen.arguments->common);
   const int exit_code = chosen.command->run(*chosen.arguments);
   print_text("");  // what is still in the buffer
   return exit_code;
+}
+
+/// How work ended, exceptions in words.
+numerics::RankEnding ending_of(const std::function<int()>& work, const Interruption& interruption) {
+  numerics::RankEnding end;
+  try {
+    end.exit_code = work();
+    return end;
+  } catch (const InputError& error) {
+    end = {kWrongInput, error.what()};
+  } catch (const std::bad_alloc&) {
+    end = {kFailed, "out of memory"};
+  } catch (const std::exception& error) {
+    end = {kFailed, error.what()};
+  }
+  // Work that a signal stopped may end in an error that says nothing about the input.
+  if (interruption.requested()) end = {kFailed, Interrupted().what()};
+  return end;
+}
+
+/// The same of all processes, where there are several.
+numerics::RankEnding ending_of_all(const numerics::Ranks& ranks, numerics::RankEnding own,
+                                   const Interruption& interruption) {
+  if (ranks.alone()) return own;
+  if (!interruption.requested()) {
+    const numerics::RankEnding failed = ending_of(
+        [&] {
+          own = ranks.finish(own);
+          return kDone;
+        },
+        interruption);
+    if (failed.exit_code != kDone) own = failed;
+  }
+  // The others are being ended too, and answer no more; `LauncherNotice` says so.
+  if (interruption.requested()) own = {kFailed, ""};
+  return own;
 }
 
 }  // namespace
@@ -207,21 +258,25 @@ int run_program(std::span<const Command> commands, const Interruption& interrupt
                 const char* const* argv) {
   // A file beyond the shell's limit of size is an error like a full disk, not the end of the program.
   std::signal(SIGXFSZ, SIG_IGN);
-  const auto fail = [&](const std::string& message, int exit_code) {
-    // Work that a signal stopped may end in an error that says nothing about the input.
-    const bool interrupted = interruption.requested();
-    print_to_stderr(fmt::format("veridyn: {}\n", interrupted ? Interrupted().what() : message));
-    return interrupted ? kFailed : exit_code;
-  };
-  try {
-    return parse_and_run(commands, interruption, {argv + 1, argv + std::max(1, argc)});
-  } catch (const InputError& error) {
-    return fail(error.what(), kWrongInput);
-  } catch (const std::bad_alloc&) {
-    return fail("out of memory", kFailed);
-  } catch (const std::exception& error) {
-    return fail(error.what(), kFailed);
+  LaunchedProcess process;
+  numerics::Ranks ranks;
+  numerics::RankEnding end = ending_of(
+      [&] {
+        process = launched_process();
+        ranks = connected_ranks(process, interruption);
+        return kDone;
+      },
+      interruption);
+  if (end.exit_code == kDone) {
+    const LauncherNotice notice(ranks, process.launcher, interruption);
+    const std::vector<std::string> words(argv + 1, argv + std::max(1, argc));
+    end = ending_of([&] { return parse_and_run(commands, interruption, ranks, words); }, interruption);
+    end = ending_of_all(ranks, std::move(end), interruption);
   }
+  // Of several processes the first says how all ended.
+  if (process.rank > 0) return interruption.requested() ? kFailed : kDone;
+  if (!end.text.empty()) print_to_stderr(fmt::format("veridyn: {}\n", end.text));
+  return end.exit_code;
 }
 
 }  // namespace veridyn::app

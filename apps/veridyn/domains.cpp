@@ -5,11 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 
-#include "apps/veridyn/checkpoint.hpp"
 #include "apps/veridyn/console.hpp"
-#include "apps/veridyn/launcher.hpp"
 #include "veridyn/core/enum_array.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
@@ -145,24 +142,18 @@ StudyRun parse_study(std::string command, const std::filesystem::path& path, std
 int run_on_study(std::string_view command, const Arguments& arguments) {
   const Row& row = *std::find_if(kRows.begin(), kRows.end(), [&](const Row& r) { return r.command == command; });
   const std::string& path = arguments.text("STUDY");
-  const bool first = launched_process().rank == 0;
-  std::optional<StudyRun> parsed;
-  Domain domain = Domain::kAircraft;
-  try {
-    parsed = parse_study(std::string(command), path, read_file(path), arguments);
-    domain = domain_of(parsed->study);
-  } catch (const InputError&) {
-    // Of several processes the first says what is wrong.
-    if (!first) return kWrongInput;
-    throw;
-  }
-  const StudyRun& run = *parsed;
+  const StudyRun run = parse_study(std::string(command), path, read_file(path), arguments);
+  const Domain domain = domain_of(run.study);
   const Cell& cell = row.cells[domain];
-  if (!cell.shares_work && !runs_alone(command)) return kDone;
   if (cell.run != nullptr) {
+    if (const std::size_t processes = arguments.common.ranks.size(); processes > 1 && !cell.shares_work)
+      throw InputError(
+          std::string(command),
+          fmt::format("runs in one process for this study, {} were started; --threads takes the processors "
+                      "of one machine",
+                      processes));
     const int exit_code = cell.run(run);
-    if (first)
-      for (const std::string& note : run.study.notes()) print_line(arguments.common, "note: " + note);
+    for (const std::string& note : run.study.notes()) print_line(arguments.common, "note: " + note);
     return exit_code;
   }
   throw InputError(run.study.name(), fmt::format("{} is for {}; this study is of {}; {}", command, domains_with(row),

@@ -20,10 +20,9 @@ namespace veridyn::app {
 namespace {
 
 void refuse_checkpoint(const StudyRun& run) {
-  for (const Argument& argument : search_checkpoint_arguments()) {
-    if (run.arguments.given(argument.name))
-      throw InputError(argument.name, "is for a person's tasks; other studies are identified at once, in one process");
-  }
+  const std::string option = search_checkpoint_argument().name;
+  if (run.arguments.given(option))
+    throw InputError(option, "is for a person's tasks; other studies are identified at once, in one process");
 }
 
 }  // namespace
@@ -55,28 +54,22 @@ int identify_vehicle(const StudyRun& run) {
 }
 
 int identify_muscles(const StudyRun& asked) {
-  const Checkpoint checkpoint = search_checkpoint_of(asked.arguments);
-  // Of several processes without a folder the first says what is missing, in one line.
-  if (!checkpoint.first && checkpoint.folder.empty()) return kDone;
+  const Checkpoint checkpoint = checkpoint_of(asked.arguments);
   StudyRun run = asked;
   run.arguments.common = checkpoint.options;
   const CommonOptions& options = run.options();
   std::optional<OutputFolder> folder;
-  if (checkpoint.first) folder.emplace(options.out);
+  if (checkpoint.first()) folder.emplace(options.out);
   WorkProgress progress(run, folder ? &*folder : nullptr);
   const muscle::TaskStudy study = muscle::read_task_study(run.study, progress);
-  const std::unique_ptr<numerics::ValueLog> log = open_value_log(checkpoint, run, study.inputs, progress);
-  const muscle::MuscleAnalysis analysis = muscle::identify(study, progress, log.get());
+  const std::unique_ptr<numerics::ValueLog> log = open_value_log(checkpoint, run, study.inputs);
+  const muscle::MuscleAnalysis analysis = muscle::identify(study, progress, log.get(), options.ranks);
   if (analysis.interrupted) {
     if (log) print_line(options, fmt::format("finished simulations are kept in {}", log->folder().string()));
     throw Interrupted();
   }
-  if (!checkpoint.first) {
-    print_line(options, fmt::format("process {} of {} is done; the first writes the results",
-                                    checkpoint.share.index + 1, checkpoint.share.count));
-    return kDone;
-  }
-  if (log && log->loaded() > 0 && checkpoint.share.count == 1)
+  if (!checkpoint.first()) return kDone;
+  if (log && log->loaded() > 0)
     print_line(options,
                fmt::format("{} simulations of the search were in {}", analysis.resumed, log->folder().string()));
   progress.stage("writing the results");
@@ -96,8 +89,9 @@ Command identify_command() {
                      .required = true}},
       .default_out = "out/identify",
       .example = "veridyn identify study.toml --out out/flight7 --set data.from=120",
-      .run = [](const Arguments& arguments) { return run_on_study("identify", arguments); }};
-  for (Argument& argument : search_checkpoint_arguments()) command.arguments.push_back(std::move(argument));
+      .run = [](const Arguments& arguments) { return run_on_study("identify", arguments); },
+      .shares_work = true};
+  command.arguments.push_back(search_checkpoint_argument());
   return command;
 }
 

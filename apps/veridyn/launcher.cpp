@@ -5,12 +5,16 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cstdlib>
+#include <memory>
 #include <optional>
 #include <string_view>
-#include <thread>
+#include <utility>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/stderr_text.hpp"
+#include "veridyn/numerics/ranks/mpi_library.hpp"
 
 namespace veridyn::app {
 namespace {
@@ -51,6 +55,34 @@ LaunchedProcess launched_process() {
             .launcher = l.name};
   }
   return {};
+}
+
+numerics::Ranks connected_ranks(const LaunchedProcess& process, const Interruption& interruption) {
+  if (process.size == 1) return {};
+  const std::shared_ptr<numerics::RankTransport> transport = numerics::mpi_transport();
+  if (transport->size() != process.size)
+    throw InputError(process.launcher,
+                     fmt::format("started {} processes, of which MPI here knows {}: it belongs to another MPI than the "
+                                 "program (Open MPI), or was told nothing of it (srun --mpi=pmix)",
+                                 process.size, transport->size()));
+  return {transport, interruption};
+}
+
+LauncherNotice::LauncherNotice(const numerics::Ranks& ranks, std::string launcher, Interruption interruption)
+    : text_(fmt::format("veridyn: {} ends the run of {} processes: it was interrupted, or one of them ended (it says "
+                        "which); no results were written, what a checkpoint holds is whole\n",
+                        launcher, ranks.size())),
+      interruption_(std::move(interruption)) {
+  if (ranks.alone() || !ranks.first()) return;
+  watch_ = std::thread([this] {
+    while (!over_ && !interruption_.requested()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    if (interruption_.requested()) print_to_stderr(text_);
+  });
+}
+
+LauncherNotice::~LauncherNotice() {
+  over_ = true;
+  if (watch_.joinable()) watch_.join();
 }
 
 int threads_of(const LaunchedProcess& process) {

@@ -1,7 +1,12 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <string>
+#include <thread>
+
+#include "veridyn/core/interruption.hpp"
+#include "veridyn/numerics/ranks/ranks.hpp"
 
 namespace veridyn::app {
 
@@ -22,5 +27,26 @@ struct LaunchedProcess {
 /// Threads of this process so that all of them on this machine have one for each processor that they may use. At least
 /// one.
 [[nodiscard]] int threads_of(const LaunchedProcess& process);
+
+/// Connects this process to those that were started with it, by MPI; nothing of MPI is loaded for one that is alone.
+/// @throws InputError where the program has no MPI, or another one than the launcher
+[[nodiscard]] numerics::Ranks connected_ranks(const LaunchedProcess& process, const Interruption& interruption);
+
+/// Says at once, in the first of several processes, that the launcher ends them: it kills them a second after its
+/// signal, which may be before the work has noticed. Launchers send the same signal after Ctrl-C and after the death of
+/// a process, of which they say what they know themselves.
+class LauncherNotice {
+ public:
+  LauncherNotice(const numerics::Ranks& ranks, std::string launcher, Interruption interruption);
+  ~LauncherNotice();
+  LauncherNotice(const LauncherNotice&) = delete;
+  LauncherNotice& operator=(const LauncherNotice&) = delete;
+
+ private:
+  std::string text_;
+  Interruption interruption_;
+  std::atomic<bool> over_ = false;
+  std::thread watch_;  ///< none in a process that does not talk
+};
 
 }  // namespace veridyn::app

@@ -111,18 +111,16 @@ Summary indices_summary(const estimation::ResultIndices& r, const std::vector<st
 
 int run_responses(const StudyRun& run, const std::function<PreparedResponses(Progress&)>& prepare) {
   const Checkpoint checkpoint = checkpoint_of(run.arguments);
-  // Of several processes without a folder the first says what is missing, in one line.
-  if (!checkpoint.first && checkpoint.folder.empty()) return kDone;
   const CommonOptions& options = checkpoint.options;
   std::optional<OutputFolder> folder;
-  if (checkpoint.first) folder.emplace(options.out);
+  if (checkpoint.first()) folder.emplace(options.out);
   TerminalProgress progress = progress_of(options);
   const PreparedResponses study = prepare(progress);
   numerics::BlockStore store = open_store(checkpoint, run, study.inputs);
   progress.stage(study.stage);
   const ResponseIndices result = study.analyse(store, progress);
   if (!result.completed) return checkpoint.stopped(store);
-  if (!checkpoint.first) return kDone;
+  if (!checkpoint.first()) return kDone;
   progress.stage("writing the results");
   folder->write("indices.csv", io::indices_csv(result.results, result.input_names(), study.options.method));
   folder->write("report.html", report::to_html(report::response_report(result, study.options, study.context)));

@@ -75,11 +75,9 @@ void print_result(const CommonOptions& options, const MuscleSensitivity& r) {
 
 int sensitivity_muscle(const StudyRun& run) {
   const Checkpoint checkpoint = checkpoint_of(run.arguments);
-  // Of several processes without a folder the first says what is missing, in one line.
-  if (!checkpoint.first && checkpoint.folder.empty()) return kDone;
   const CommonOptions& options = checkpoint.options;
   std::optional<OutputFolder> folder;
-  if (checkpoint.first) folder.emplace(options.out);
+  if (checkpoint.first()) folder.emplace(options.out);
   TerminalProgress progress = progress_of(options);
   const SensitivityStudy study = read_sensitivity_study(run.study, progress);
   numerics::BlockStore store = open_store(checkpoint, run, study.inputs);
@@ -88,7 +86,7 @@ int sensitivity_muscle(const StudyRun& run) {
   if (progress.interrupted()) throw Interrupted();
   const MuscleSensitivity result = analyse_sensitivity(*study.subject.system, tasks, study.options, store, progress);
   if (!result.completed) return checkpoint.stopped(store);
-  if (!checkpoint.first) return kDone;
+  if (!checkpoint.first()) return kDone;
   progress.stage("writing the results");
   folder->write("sensitivity.csv", sensitivity_csv(result));
   folder->write("tasks.csv", task_choice_csv(result, tasks));
@@ -124,7 +122,8 @@ Command sensitivity_command() {
       .example =
           "veridyn sensitivity arm.toml --set tasks.numbers=all --out out/arm\n"
           "  veridyn sensitivity step_steer.toml --set sensitivity.method=morris",
-      .run = [](const Arguments& arguments) { return run_on_study("sensitivity", arguments); }};
+      .run = [](const Arguments& arguments) { return run_on_study("sensitivity", arguments); },
+      .shares_work = true};
   for (Argument& argument : checkpoint_arguments()) command.arguments.push_back(std::move(argument));
   return command;
 }

@@ -2,10 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <atomic>
 #include <bit>
-#include <thread>
 
 #include "tests/estimation/output_error/example_models.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -101,29 +99,6 @@ TEST_F(LoggedModelTest, ASearchCutOffAnywhereGoesOnToTheSameBits) {
     ASSERT_EQ(bits(output_error(again, measured_, options_)), expected) << cut;
     EXPECT_EQ(rest.count + cut, whole.count) << cut;
   }
-}
-
-TEST_F(LoggedModelTest, TwoProcessesSimulateHalfEachAndComeToTheSameBits) {
-  const CountingModel whole(model_), first(model_), second(model_);
-  std::vector<std::uint64_t> expected;
-  {
-    numerics::ValueLog log(folder_);
-    expected = bits(output_error(logged(whole, &log), measured_, options_));
-  }
-  std::filesystem::remove_all(folder_);
-  std::array<std::vector<std::uint64_t>, 2> found;
-  std::vector<std::thread> processes;
-  for (std::size_t p = 0; p < 2; ++p)
-    processes.emplace_back([&, p] {
-      numerics::ValueLog log(folder_, {.index = p, .count = 2, .wait = true});
-      found[p] = bits(output_error(logged(p == 0 ? first : second, &log), measured_, options_));
-    });
-  for (std::thread& p : processes) p.join();
-  EXPECT_EQ(found[0], expected);
-  EXPECT_EQ(found[1], expected);
-  // One of the two segments each.
-  EXPECT_EQ(first.count + second.count, whole.count);
-  EXPECT_EQ(first.count, second.count);
 }
 
 TEST_F(LoggedModelTest, KeepsModelsOfOneLogApartAndRunsThatDidNotFinish) {

@@ -2,9 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <atomic>
-#include <thread>
 
 #include "tests/estimation/search/search_problems.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -51,47 +49,6 @@ TEST(BatchEvaluator, EvaluatesNoPointTwice) {
   EXPECT_EQ(calls, 2);
   EXPECT_EQ(values[0].objective, values[2].objective);
   EXPECT_EQ(values[1].objective, 1.0);
-}
-
-TEST(BatchEvaluator, TwoProcessesEvaluateHalfEachAndComeToTheSameBits) {
-  const test::TemporaryFolder temporary;
-  const std::filesystem::path& folder = temporary.path();
-  Progress calm;
-  BatchEvaluator alone(disc(), {}, calm);
-  (void)both(alone);
-  // The first goes on from what a single process left.
-  std::size_t left = 0;
-  {
-    BatchEvaluator begun(disc(), {.max_evaluations = 50, .log = folder / "search.csv"}, calm);
-    (void)both(begun);
-    left = begun.evaluations().size();
-  }
-  ASSERT_GT(left, 0U);
-  std::array<std::atomic<std::size_t>, 2> calls{};
-  std::array<std::vector<double>, 2> found;
-  std::vector<std::thread> processes;
-  for (std::size_t p = 0; p < 2; ++p)
-    processes.emplace_back([&, p] {
-      numerics::ValueLog shared(folder, {.index = p, .count = 2, .wait = true});
-      BlackBoxProblem problem = disc();
-      problem.evaluate = [&, f = problem.evaluate](const Eigen::VectorXd& x) { return ++calls[p], f(x); };
-      Progress progress;
-      EvaluationOptions options{.shared = &shared};
-      if (p == 0) options.log = folder / "search.csv";
-      BatchEvaluator evaluator(problem, options, progress);
-      (void)both(evaluator);
-      found[p] = numbers(evaluator);
-    });
-  for (std::thread& p : processes) p.join();
-  EXPECT_EQ(found[0], numbers(alone));
-  EXPECT_EQ(found[1], numbers(alone));
-  // Every point once, but for those that the single process left: the second may compute its share of them before the
-  // first has told it. Many batches of a search in two dimensions have one point, which is the first process'.
-  const std::size_t all = alone.evaluations().size();
-  EXPECT_GE(calls[0] + calls[1], all - left);
-  EXPECT_LE(calls[0] + calls[1], all);
-  EXPECT_GT(calls[1], all / 8);
-  std::filesystem::remove_all(folder);
 }
 
 TEST(BatchEvaluator, ResumedAtAnyPointEndsAsIfNeverInterrupted) {

@@ -3,14 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <bit>
-#include <chrono>
 #include <cmath>
 #include <limits>
-#include <thread>
 
 #include "tests/support/temporary_folder.hpp"
+#include "tests/support/thread_ranks.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 
@@ -177,51 +177,34 @@ TEST_F(BlockStoreTest, HasTheSameBitsFromAnyNumberOfShards) {
   EXPECT_EQ(computed_, 47);
 }
 
-TEST_F(BlockStoreTest, ProcessesWaitForEachOther) {
+TEST_F(BlockStoreTest, ProcessesOfALauncherComputeTogetherAndTheFirstAloneKeepsTheBlocks) {
   const std::vector<std::uint64_t> expected = undisturbed();
-  std::vector<std::vector<std::uint64_t>> found(3);
-  {
-    std::vector<std::thread> processes;
-    for (std::size_t p = 0; p < 3; ++p)
-      processes.emplace_back([&, p] {
-        std::this_thread::sleep_for(std::chrono::milliseconds(40 * p));
-        StoreProgress progress;
-        found[p] = bits(store({.index = p, .count = 3, .wait = true}).compute(batch(), progress));
-      });
-    for (std::thread& t : processes) t.join();
+  for (const std::size_t size : {2U, 3U, 4U}) {
+    std::filesystem::remove_all(folder_);
+    computed_ = 0;
+    // What a process alone left is taken from the folder.
+    StoreProgress stopping(20, 1);
+    EXPECT_FALSE(store().compute(batch(), stopping).completed);
+    const int left = computed_;
+    std::vector<std::vector<std::uint64_t>> found(size);
+    std::vector<char> completed(size, 0);
+    test::run_ranks(size, [&](const Ranks& ranks) {
+      StoreProgress progress(1000000000, 1);
+      BlockStore s = ranks.first() ? BlockStore(folder_, kIdentity, {}, ranks) : BlockStore(ranks);
+      const BatchValues values = s.compute(batch(), progress);
+      found[ranks.rank()] = bits(values);
+      completed[ranks.rank()] = values.completed ? 1 : 0;
+    });
+    for (const auto& f : found) EXPECT_EQ(f, expected);
+    EXPECT_EQ(std::count(completed.begin(), completed.end(), 1), static_cast<long>(size));
+    EXPECT_LT(left, 25);
+    EXPECT_GE(left, 15);
+    // Whole blocks of those count.
+    EXPECT_EQ(computed_, left + 47 - left / 5 * 5);
+    computed_ = 0;
+    EXPECT_EQ(bits(store().compute(batch(), progress_)), expected);
+    EXPECT_EQ(computed_, 0);
   }
-  EXPECT_EQ(computed_, 47);
-  for (const auto& f : found) EXPECT_EQ(f, expected);
-  for (const auto& entry : std::filesystem::directory_iterator(folder_))
-    EXPECT_NE(entry.path().extension(), ".alive") << entry.path();
-}
-
-TEST_F(BlockStoreTest, NamesTheProcessThatShowsNoLife) {
-  BlockStore s = store({.index = 0, .count = 2, .wait = true, .patience_s = 0.2});
-  write_file(folder_ / "process-2.alive", "node7, process 4711\n12\n");
-  try {
-    (void)s.compute(batch(), progress_);
-    FAIL() << "did not wait";
-  } catch (const std::runtime_error& error) {
-    EXPECT_THAT(error.what(),
-                HasSubstr("process 2 of 2 (node7, process 4711) has shown no life for 0.2 s, and 5 blocks"));
-  }
-  // Its blocks are there for the next run.
-  computed_ = 0;
-  EXPECT_TRUE(store().compute(batch(), progress_).completed);
-  EXPECT_EQ(computed_, 22);  // blocks 1, 3, 5, 7 and the short one
-}
-
-TEST_F(BlockStoreTest, WaitingEndsWithTheProgress) {
-  struct StopsWaiting : StoreProgress {
-    void stage(std::string_view name) override { waits = name == "waiting for 5 blocks of other processes"; }
-    [[nodiscard]] bool update(double) override { return !waits; }
-    bool waits = false;
-  } stopping;
-  BlockStore s = store({.index = 0, .count = 2, .wait = true});
-  EXPECT_FALSE(s.compute(batch(), stopping).completed);
-  EXPECT_TRUE(stopping.waits);
-  EXPECT_EQ(s.missing(), 0u);
 }
 
 TEST_F(BlockStoreTest, AnEmptyBatchIsComplete) {

@@ -31,7 +31,6 @@ class CorrelatedNoiseModel final : public ParametricModel {
     return model_->initial_conditions(segment);
   }
   [[nodiscard]] std::string segment_name(std::size_t segment) const override { return model_->segment_name(segment); }
-  [[nodiscard]] std::vector<std::size_t> segment_order() const override { return model_->segment_order(); }
   [[nodiscard]] bool respond(std::size_t segment, const Eigen::VectorXd& theta, std::span<const Eigen::Index> active,
                              ModelResponse& response) const override;
 

@@ -21,10 +21,6 @@ std::vector<double> kept_values(const ModelResponse& response) {
 LoggedModel::LoggedModel(const ParametricModel& model, std::string name, Misfit misfit, numerics::ValueLog* log)
     : model_(&model), name_(std::move(name)), misfit_(std::move(misfit)), log_(log) {}
 
-std::vector<std::size_t> LoggedModel::segment_order() const {
-  return log_ == nullptr ? model_->segment_order() : log_->share().own_first(segments());
-}
-
 std::uint64_t LoggedModel::key_of(std::size_t segment, const Eigen::VectorXd& theta,
                                   std::span<const Eigen::Index> active) const {
   numerics::Fingerprint key;
@@ -50,8 +46,7 @@ bool LoggedModel::respond(std::size_t segment, const Eigen::VectorXd& theta, std
     seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     return finished ? kept_values(response) : std::vector<double>();
   };
-  const std::vector<double> values =
-      numerics::kept_or_computed(log_, key_of(segment, theta, active), segment, fits, compute);
+  const std::vector<double> values = numerics::kept_or_computed(log_, key_of(segment, theta, active), fits, compute);
   if (!computed) {
     finished = !values.empty();
     if (finished) {

@@ -24,9 +24,6 @@ struct ModelEvaluation {
 /// View of a model that notes what is asked of it, and answers from a log what an earlier run was answered: an
 /// estimation that was cut off takes the same path with the same bits, only faster, until it comes to where it was.
 /// Works with every estimator, for all of them take the next step from responses alone.
-///
-/// Where the log is shared between processes, each simulates its share of the segments and takes the others' from the
-/// log; `segment_order` has its own first.
 class LoggedModel final : public ParametricModel {
  public:
   /// How far a segment's outputs are from what was measured, for `evaluations`.
@@ -45,7 +42,6 @@ class LoggedModel final : public ParametricModel {
     return model_->initial_conditions(segment);
   }
   [[nodiscard]] std::string segment_name(std::size_t segment) const override { return model_->segment_name(segment); }
-  [[nodiscard]] std::vector<std::size_t> segment_order() const override;
   [[nodiscard]] bool respond(std::size_t segment, const Eigen::VectorXd& theta, std::span<const Eigen::Index> active,
                              ModelResponse& response) const override;
 

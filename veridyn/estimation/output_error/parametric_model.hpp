@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <functional>
-#include <numeric>
 #include <span>
 #include <string>
 #include <vector>
@@ -60,13 +59,6 @@ class ParametricModel {
     return "segment " + std::to_string(segment + 1);
   }
 
-  /// All segments, in the order in which it is best asked for them: for `for_each_segment`.
-  [[nodiscard]] virtual std::vector<std::size_t> segment_order() const {
-    std::vector<std::size_t> order(segments());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    return order;
-  }
-
   /// Outputs at `theta`, and their derivatives with respect to theta(active[0]), theta(active[1]), ...; none when
   /// `active` is empty. False when the simulation diverges or leaves the model's range; `response` is then worthless.
   [[nodiscard]] virtual bool respond(std::size_t segment, const Eigen::VectorXd& theta,
@@ -75,8 +67,7 @@ class ParametricModel {
 
 /// Calls `work(segment)` for all segments of a model, on `threads` threads (0: as many as the machine has).
 inline void for_each_segment(const ParametricModel& model, int threads, const std::function<void(std::size_t)>& work) {
-  const std::vector<std::size_t> order = model.segment_order();
-  numerics::parallel_for(order.size(), threads, [&](std::size_t k) { work(order[k]); });
+  numerics::parallel_for(model.segments(), threads, work);
 }
 
 }  // namespace veridyn::estimation

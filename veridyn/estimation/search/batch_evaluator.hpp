@@ -9,17 +9,13 @@
 #include "veridyn/core/progress.hpp"
 #include "veridyn/estimation/search/black_box_problem.hpp"
 #include "veridyn/estimation/search/search_log.hpp"
-#include "veridyn/numerics/batches/value_log.hpp"
 
 namespace veridyn::estimation {
 
-/// How evaluations are made and kept; view of the log that processes share, where there is one.
+/// How evaluations are made and kept.
 struct EvaluationOptions {
   std::size_t max_evaluations = std::numeric_limits<std::size_t>::max();  ///< of all searches together
   std::filesystem::path log = {};  ///< empty: in memory only. A log that is there is continued
-  /// Shared between processes that search together, each of which evaluates its share of a batch; must outlive the
-  /// search. nullptr: this process searches alone.
-  numerics::ValueLog* shared = nullptr;
 };
 
 /// View of a `Progress`, on the threads of which it evaluates a problem in batches, with the same bits on any number of
@@ -50,13 +46,11 @@ class BatchEvaluator {
  private:
   [[nodiscard]] bool take_from_log(std::span<const Eigen::VectorXd> points);
   [[nodiscard]] bool compute(std::span<const Eigen::VectorXd> points);
-  /// Evaluated, or taken from where another process puts it.
-  [[nodiscard]] SearchEvaluation evaluated(std::size_t item, const Eigen::VectorXd& x) const;
+  [[nodiscard]] SearchEvaluation evaluated(const Eigen::VectorXd& x) const;
 
   BlackBoxProblem problem_;
   std::size_t max_evaluations_;
   Progress* progress_;
-  numerics::ValueLog* shared_;
   SearchLog log_;
   std::size_t used_ = 0, failed_ = 0;
   SearchTermination ended_ = SearchTermination::kEvaluations;

@@ -144,22 +144,19 @@ class Posterior {
 };
 
 /// Answered from the log where it is there; a density takes a simulation of every segment.
-double kept_density(const Posterior& posterior, const Eigen::VectorXd& x, std::size_t item, numerics::ValueLog* log) {
+double kept_density(const Posterior& posterior, const Eigen::VectorXd& x, numerics::ValueLog* log) {
   numerics::Fingerprint key;
   key.add("posterior");
   for (const double value : x) key.add(value);
   const auto fits = [](std::size_t count) { return count == 1; };
   const auto compute = [&] { return std::vector<double>{posterior.log_density(x)}; };
-  return numerics::kept_or_computed(log, key.value(), item, fits, compute).front();
+  return numerics::kept_or_computed(log, key.value(), fits, compute).front();
 }
 
-/// Of all points, of which a shared log leaves some to other processes.
 void kept_densities(const Posterior& posterior, std::span<const Eigen::VectorXd> points, std::span<double> densities,
                     numerics::ValueLog* log, int threads) {
-  const std::vector<std::size_t> order = numerics::share_of(log).own_first(points.size());
-  numerics::parallel_for(points.size(), threads, [&](std::size_t k) {
-    densities[order[k]] = kept_density(posterior, points[order[k]], order[k], log);
-  });
+  numerics::parallel_for(points.size(), threads,
+                         [&](std::size_t k) { densities[k] = kept_density(posterior, points[k], log); });
 }
 
 }  // namespace
@@ -170,8 +167,7 @@ PosteriorSample sample_posterior(const ParametricModel& model, const std::vector
   if (!(options.dispersion >= 1.0))
     throw InputError("dispersion", fmt::format("= {:g} must be at least 1", options.dispersion));
   const Posterior posterior(model, measured, estimate, options.dispersion);
-  // Where the walkers start is found one after the other: by the first of several processes.
-  const LogDensity density = [&](const Eigen::VectorXd& x) { return kept_density(posterior, x, 0, log); };
+  const LogDensity density = [&](const Eigen::VectorXd& x) { return kept_density(posterior, x, log); };
   const LogDensities densities = [&](std::span<const Eigen::VectorXd> points, std::span<double> values) {
     kept_densities(posterior, points, values, log, progress.threads());
   };

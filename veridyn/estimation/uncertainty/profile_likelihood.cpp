@@ -37,7 +37,6 @@ class WithOneFixed final : public ParametricModel {
   [[nodiscard]] Eigen::Index samples(std::size_t s) const override { return model_.samples(s); }
   [[nodiscard]] std::span<const ModelParameter> initial_conditions(std::size_t s) const override { return initial_[s]; }
   [[nodiscard]] std::string segment_name(std::size_t s) const override { return model_.segment_name(s); }
-  [[nodiscard]] std::vector<std::size_t> segment_order() const override { return model_.segment_order(); }
   [[nodiscard]] bool respond(std::size_t s, const Eigen::VectorXd& theta, std::span<const Eigen::Index> active,
                              ModelResponse& response) const override {
     return model_.respond(s, theta, active, response);

@@ -44,7 +44,7 @@ std::uint64_t checksum_of(std::span<const estimation::RowMatrix> targets) {
   return sum;
 }
 
-std::vector<double> errors_at(const MuscleParametricModel& model, std::span<const estimation::RowMatrix> targets,
+std::vector<double> errors_at(const estimation::ParametricModel& model, std::span<const estimation::RowMatrix> targets,
                               const Eigen::VectorXd& theta) {
   const std::vector<estimation::RowMatrix> predicted = simulate_tasks(model, theta, 1);
   std::vector<double> nrmse;
@@ -52,7 +52,7 @@ std::vector<double> errors_at(const MuscleParametricModel& model, std::span<cons
   return nrmse;
 }
 
-estimation::BlackBoxProblem problem_of(const MuscleParametricModel& model,
+estimation::BlackBoxProblem problem_of(const MuscleParametricModel& model, const estimation::ParametricModel& responses,
                                        std::span<const estimation::RowMatrix> targets,
                                        const PublishedRouteOptions& options) {
   const std::vector<std::size_t> list = searched(model);
@@ -74,9 +74,9 @@ estimation::BlackBoxProblem problem_of(const MuscleParametricModel& model,
                                       options.swarm.iterations, options.swarm.seed)},
                 {"pattern", fmt::format("mesh {} to {}, seed {}", options.pattern.initial_mesh,
                                         options.pattern.tolerance, options.pattern.seed)}};
-  p.evaluate = [&model, targets, list, tolerance = options.tolerance](const Eigen::VectorXd& x) {
+  p.evaluate = [&model, &responses, targets, list, tolerance = options.tolerance](const Eigen::VectorXd& x) {
     estimation::SearchValues values{.objective = 0.0,
-                                    .constraints = errors_at(model, targets, all_unknowns(model, list, x))};
+                                    .constraints = errors_at(responses, targets, all_unknowns(model, list, x))};
     for (double& error : values.constraints) {
       values.objective += error;
       error -= tolerance;
@@ -109,7 +109,8 @@ std::string PublishedRouteResult::message() const {
 }
 
 PublishedRouteResult published_route(const MuscleParametricModel& model, std::span<const estimation::RowMatrix> targets,
-                                     const PublishedRouteOptions& options, Progress& progress) {
+                                     const PublishedRouteOptions& options, Progress& progress,
+                                     const estimation::ParametricModel* responses) {
   options.validate();
   if (targets.size() != model.segments())
     throw InputError("targets", fmt::format("{} for {} tasks", targets.size(), model.segments()));
@@ -117,7 +118,8 @@ PublishedRouteResult published_route(const MuscleParametricModel& model, std::sp
     if (!task_error(targets[s], targets[s]).moves)
       throw InputError(model.segment_name(s), "its target moves less than 1 deg: there is no NRMSE");
   }
-  estimation::BatchEvaluator evaluator(problem_of(model, targets, options), options.evaluation, progress);
+  if (responses == nullptr) responses = &model;
+  estimation::BatchEvaluator evaluator(problem_of(model, *responses, targets, options), options.evaluation, progress);
   PublishedRouteResult result;
   progress.stage("particle swarm until feasible");
   result.swarm = estimation::particle_swarm(evaluator, options.swarm);

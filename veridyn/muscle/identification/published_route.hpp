@@ -50,9 +50,11 @@ struct PublishedRouteResult {
 /// Where no swarm finds a feasible point the pattern search goes on from the best one, lessening the violation first.
 /// The same bits on any number of threads.
 /// @param targets  by segment of `model`: samples x outputs; NaN is a missing value
+/// @param responses  simulates in the model's place: a view of it; nullptr: the model itself
 /// @throws InputError when an option is out of order, a target has no motion, or the log is of another search.
 [[nodiscard]] PublishedRouteResult published_route(const MuscleParametricModel& model,
                                                    std::span<const estimation::RowMatrix> targets,
-                                                   const PublishedRouteOptions& options, Progress& progress);
+                                                   const PublishedRouteOptions& options, Progress& progress,
+                                                   const estimation::ParametricModel* responses = nullptr);
 
 }  // namespace veridyn::muscle

@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cmath>
 #include <map>
-#include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -22,59 +21,15 @@
 #include "veridyn/muscle/identification/task_segments.hpp"
 #include "veridyn/muscle/identification/task_warnings.hpp"
 #include "veridyn/muscle/simulation/wrap_bands.hpp"
+#include "veridyn/muscle/study/task_part.hpp"
 #include "veridyn/muscle/study/task_recordings.hpp"
 #include "veridyn/muscle/tasks/task_error.hpp"
+#include "veridyn/numerics/ranks/ranks_progress.hpp"
 
 namespace veridyn::muscle {
 namespace {
 
 using estimation::RowMatrix;
-
-/// The tasks of one use, and the model that estimators see of them.
-struct Part {
-  std::vector<const TaskRecording*> tasks;
-  std::vector<RowMatrix> measured;
-  // One of them: tasks that are simulated forward, or along their recorded angles.
-  std::unique_ptr<MuscleParametricModel> forward;
-  std::unique_ptr<EmgDrivenModel> along;
-  std::unique_ptr<estimation::LoggedModel> logged;  // views it
-
-  [[nodiscard]] const estimation::ParametricModel& model() const {
-    if (along) return *along;
-    return *forward;
-  }
-};
-
-MuscleModelOptions model_options(const TaskStudy& study) {
-  return {.accuracy = study.accuracy, .estimate_start = study.estimate_start, .outputs = study.outputs};
-}
-
-/// Those with `hold_out` as given.
-Part part_of(const TaskStudy& study, const TaskRecordings& all, bool hold_out, numerics::ValueLog* log = nullptr) {
-  Part part;
-  std::vector<MotionSegment> forward;
-  std::vector<EmgSegment> along;
-  for (const TaskRecording& task : all.tasks) {
-    if (task.hold_out != hold_out) continue;
-    part.tasks.push_back(&task);
-    part.measured.push_back(task.measured);
-    if (task.forward) forward.push_back(*task.forward);
-    if (task.along) along.push_back(*task.along);
-  }
-  if (part.tasks.empty()) return part;
-  const MusculoskeletalSystem& system = *study.subject.system;
-  if (study.emg)
-    part.along = std::make_unique<EmgDrivenModel>(system, study.unknowns, std::move(along), study.outputs,
-                                                  study.emg->signal_of, study.accuracy);
-  else
-    part.forward =
-        std::make_unique<MuscleParametricModel>(system, study.unknowns, std::move(forward), model_options(study));
-  const auto nrmse = [tasks = part.tasks](std::size_t segment, const RowMatrix& output) {
-    return task_error(tasks[segment]->measured, output).nrmse;
-  };
-  part.logged = std::make_unique<estimation::LoggedModel>(part.model(), hold_out ? "unseen" : "trained", nrmse, log);
-  return part;
-}
 
 /// Standard deviations of the outputs' noise; empty unless all are known.
 Eigen::VectorXd stated_noise(const TaskStudy& study) {
@@ -87,8 +42,9 @@ Eigen::VectorXd stated_noise(const TaskStudy& study) {
 }
 
 /// How a part's tasks go with the standard model and at `theta`; `predicted` in place of simulations where given.
-std::vector<TaskOutcome> outcomes_of(const Part& part, const Eigen::VectorXd& standard, const Eigen::VectorXd& theta,
-                                     const std::vector<RowMatrix>& predicted, bool hold_out, int threads) {
+std::vector<TaskOutcome> outcomes_of(const TaskPart& part, const Eigen::VectorXd& standard,
+                                     const Eigen::VectorXd& theta, const std::vector<RowMatrix>& predicted,
+                                     bool hold_out, int threads) {
   std::vector<TaskOutcome> outcomes;
   if (part.tasks.empty()) return outcomes;
   std::vector<RowMatrix> before = simulate_tasks(part.model(), standard, threads);
@@ -287,16 +243,12 @@ struct RouteResult {
 };
 
 /// By the published search.
-RouteResult by_published_route(const TaskStudy& study, const Part& part, const Eigen::VectorXd& noise,
+RouteResult by_published_route(const TaskStudy& study, const SearchedTasks& searched, const Eigen::VectorXd& noise,
                                numerics::ValueLog* log, Progress& progress) {
+  const TaskPart& part = *searched.part;
   PublishedRouteOptions options = *study.published;
-  if (log != nullptr) {
-    if (options.evaluation.log.empty()) options.evaluation.log = log->folder() / "search.csv";
-    if (log->share().count > 1) options.evaluation.shared = log;
-    // Written by the first of several processes.
-    if (log->share().index > 0) options.evaluation.log.clear();
-  }
-  PublishedRouteResult found = published_route(*part.forward, part.measured, options, progress);
+  if (log != nullptr && options.evaluation.log.empty()) options.evaluation.log = log->folder() / "search.csv";
+  PublishedRouteResult found = published_route(*part.forward, part.measured, options, progress, &searched.shared);
   RouteResult result;
   result.evaluations = std::move(found.evaluations);
   result.resumed = found.resumed * part.tasks.size();
@@ -312,51 +264,54 @@ RouteResult by_published_route(const TaskStudy& study, const Part& part, const E
                       found.nrmse[s], part.tasks[s]->name, options.tolerance, found.pattern.message()));
   }
   TaskSearch search{.steps = static_cast<int>(result.evaluations.size()), .message = found.message()};
-  result.estimate = describe_estimate(*part.logged, part.measured, noise, found.theta, std::move(search), progress);
+  result.estimate = describe_estimate(searched.logged, part.measured, noise, found.theta, std::move(search), progress);
   result.estimate.seconds = found.seconds;
   result.estimate.simulations = {.values = found.simulations};
   return result;
 }
 
 /// By the route that the study asks for.
-RouteResult by_route(const TaskStudy& study, const Part& part, const Eigen::VectorXd& noise, numerics::ValueLog* log,
-                     Progress& progress) {
-  if (study.published) return by_published_route(study, part, noise, log, progress);
+RouteResult by_route(const TaskStudy& study, const SearchedTasks& searched, const Eigen::VectorXd& noise,
+                     numerics::ValueLog* log, Progress& progress) {
+  if (study.published) return by_published_route(study, searched, noise, log, progress);
+  const TaskPart& part = *searched.part;
   RouteResult result;
   if (part.along) {
     result.emg =
-        estimate_from_emg(*part.along, *part.logged, part.measured, noise, study.emg->error, study.search, progress);
+        estimate_from_emg(*part.along, searched.logged, part.measured, noise, study.emg->error, study.search, progress);
     result.estimate = result.emg.estimate;
   } else {
-    result.estimate = estimate_from_tasks(*part.logged, part.measured, noise, study.search, progress);
+    result.estimate = estimate_from_tasks(searched.logged, part.measured, noise, study.search, progress);
   }
-  result.evaluations = part.logged->evaluations();
-  result.resumed = part.logged->resumed();
+  result.evaluations = searched.logged.evaluations();
+  result.resumed = searched.logged.resumed();
   return result;
 }
 
 /// Profiles, where the study asks for them.
-estimation::ProfileResult profiles_of(const TaskStudy& study, const Part& part, const Eigen::VectorXd& noise,
-                                      const RouteResult& found, Progress& progress) {
+estimation::ProfileResult profiles_of(const TaskStudy& study, const SearchedTasks& searched,
+                                      const Eigen::VectorXd& noise, const RouteResult& found, Progress& progress) {
   if (study.profiles.empty()) return {};
   progress.stage(fmt::format("profile likelihood of {} parameters", study.profiles.size()));
-  if (!study.emg) return profile_tasks(*part.logged, part.measured, noise, found.estimate, study.profiles, progress);
+  if (!study.emg)
+    return profile_tasks(searched.logged, searched.part->measured, noise, found.estimate, study.profiles, progress);
   const Eigen::VectorXd one = Eigen::VectorXd::Ones(study.outputs.size());
   return profile_tasks(*found.emg.model, found.emg.measured, one, found.estimate, study.profiles, progress);
 }
 
 /// The posterior, where the study asks for it. The densities are kept, a number each, not the responses.
-estimation::PosteriorSample posterior_of(const TaskStudy& study, const Part& part, const RouteResult& found,
-                                         numerics::ValueLog* log, Progress& progress) {
+estimation::PosteriorSample posterior_of(const TaskStudy& study, const SearchedTasks& searched,
+                                         const RouteResult& found, numerics::ValueLog* log, Progress& progress) {
   if (!study.posterior || progress.interrupted()) return {};
   progress.stage(fmt::format("posterior of {} parameters", study.unknowns.size()));
-  if (!study.emg) return sample_tasks(part.model(), part.measured, found.estimate, *study.posterior, progress, log);
-  return sample_tasks(found.emg.model->on(part.model()), found.emg.measured, found.estimate, *study.posterior, progress,
-                      log);
+  if (!study.emg)
+    return sample_tasks(searched.shared, searched.part->measured, found.estimate, *study.posterior, progress, log);
+  return sample_tasks(found.emg.model->on(searched.shared), found.emg.measured, found.estimate, *study.posterior,
+                      progress, log);
 }
 
 /// Why no search came to an end, with the first task that cannot be simulated where the first search begins.
-std::string why_diverged(const TaskStudy& study, const Part& part, const TaskEstimate& e) {
+std::string why_diverged(const TaskStudy& study, const TaskPart& part, const TaskEstimate& e) {
   std::string text = e.best.message.empty() ? "no search came to an end" : e.best.message;
   const Eigen::VectorXd start = study.search.first.size() > 0 ? study.search.first : start_values(study.unknowns);
   for (std::size_t s = 0; s < part.tasks.size(); ++s) {
@@ -367,7 +322,7 @@ std::string why_diverged(const TaskStudy& study, const Part& part, const TaskEst
 }
 
 /// What the paths of the tasks have to be warned of.
-std::vector<std::string> path_warnings(const TaskStudy& study, const Part& part, const Eigen::VectorXd& theta) {
+std::vector<std::string> path_warnings(const TaskStudy& study, const TaskPart& part, const Eigen::VectorXd& theta) {
   if (part.forward) return task_warnings(*part.forward, theta);
   std::vector<std::string> warnings;
   for (const TaskRecording* task : part.tasks) {
@@ -378,7 +333,7 @@ std::vector<std::string> path_warnings(const TaskStudy& study, const Part& part,
 }
 
 /// The rows that judge the estimate; those about EMG where the study has it.
-std::vector<estimation::Evidence> judged(const TaskStudy& study, const Part& trained, const MuscleAnalysis& a,
+std::vector<estimation::Evidence> judged(const TaskStudy& study, const TaskPart& trained, const MuscleAnalysis& a,
                                          const std::vector<std::string>& wraps, const Eigen::VectorXd& noise) {
   std::vector<estimation::Evidence> rows = judge_tasks({.estimate = a.result,
                                                         .tasks = a.tasks,
@@ -401,21 +356,30 @@ std::vector<estimation::Evidence> judged(const TaskStudy& study, const Part& tra
 
 }  // namespace
 
-MuscleAnalysis identify(const TaskStudy& study, Progress& progress, numerics::ValueLog* log) {
+MuscleAnalysis identify(const TaskStudy& study, Progress& progress, numerics::ValueLog* log,
+                        const numerics::Ranks& ranks) {
   MuscleAnalysis a;
   TaskRecordings all = task_recordings(study, progress);
   a.interrupted = progress.interrupted();
   if (a.interrupted) return a;
   a.preparing_s = all.seconds;
   a.truth = all.truth;
-  const Part trained = part_of(study, all, false, log), unseen = part_of(study, all, true);
+  const TaskPart trained = task_part(study, all, false), unseen = task_part(study, all, true);
   if (trained.tasks.empty())
     throw InputError(study.subject.title,
                      fmt::format("no task is left to estimate from: {}", fmt::join(all.unused, "; ")));
+  numerics::SharedWork work(ranks, fingerprint_of(study, trained), progress.threads(),
+                            estimation::SharedModel::responses_of(trained.model()));
+  if (!ranks.first()) {
+    static_cast<void>(work.serve());
+    return a;
+  }
+  const SearchedTasks searched(trained, work, log);
+  numerics::RanksProgress progress_of_all(progress, work.threads());
   a.outputs.assign(trained.model().outputs().begin(), trained.model().outputs().end());
   const Eigen::VectorXd noise = stated_noise(study);
   progress.stage(fmt::format("estimating {} parameters from {} tasks", study.unknowns.size(), trained.tasks.size()));
-  RouteResult found = by_route(study, trained, noise, log, progress);
+  RouteResult found = by_route(study, searched, noise, log, progress_of_all);
   a.result = found.estimate;
   a.evaluations = std::move(found.evaluations);
   a.resumed = found.resumed;
@@ -433,8 +397,9 @@ MuscleAnalysis identify(const TaskStudy& study, Progress& progress, numerics::Va
   a.unused = std::move(all.unused);
   const std::vector<std::string> wraps = path_warnings(study, trained, theta);
   std::vector<estimation::Evidence> rows = judged(study, trained, a, wraps, noise);
-  a.profiles = profiles_of(study, trained, noise, found, progress);
-  a.posterior = posterior_of(study, trained, found, log, progress);
+  a.profiles = profiles_of(study, searched, noise, found, progress_of_all);
+  a.posterior = posterior_of(study, searched, found, log, progress_of_all);
+  work.finish();
   if (study.advice && !progress.interrupted()) a.advice = advice_for(study, *trained.forward, a.result, rows, progress);
   a.interrupted = progress.interrupted();
   if (a.interrupted) return a;
@@ -473,7 +438,7 @@ MuscleAnalysis validate(const TaskStudy& study, const estimation::Estimate& esti
   a.preparing_s = all.seconds;
   a.truth = all.truth;
   for (TaskRecording& task : all.tasks) task.hold_out = true;
-  const Part unseen = part_of(study, all, true);
+  const TaskPart unseen = task_part(study, all, true);
   if (unseen.tasks.empty())
     throw InputError(study.subject.title,
                      fmt::format("no task is left to validate on: {}", fmt::join(all.unused, "; ")));

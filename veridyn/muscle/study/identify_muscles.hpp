@@ -12,6 +12,7 @@
 #include "veridyn/muscle/identification/task_judgement.hpp"
 #include "veridyn/muscle/study/task_study.hpp"
 #include "veridyn/numerics/batches/value_log.hpp"
+#include "veridyn/numerics/ranks/ranks.hpp"
 
 namespace veridyn::muscle {
 
@@ -37,12 +38,14 @@ struct MuscleAnalysis : estimation::Analysis {
 /// The full pipeline: tasks prepared, measured (or a person simulated), estimate from those that are not held out,
 /// hold-out, verdict.
 /// @param log  keeps what search, profiles and posterior ask of the model, so that a run which was cut off goes on to
-/// the same bits; of this study alone. Where it is shared, all processes call this function and come to the same
-/// result. nullptr: nothing is kept. The published search keeps its own log in the same folder, `search.csv`, where the
-/// study names none
+/// the same bits; of this study alone. nullptr: nothing is kept. The published search keeps its own log in the same
+/// folder, `search.csv`, where the study names none
+/// @param ranks  whose processes all call this function with the same study: the first comes to the result, on any
+/// number of them to the same bits; the others simulate for it, and return an empty analysis
 /// @throws InputError when no task can be estimated from, std::runtime_error when every search diverges, naming task,
 /// time and state.
-[[nodiscard]] MuscleAnalysis identify(const TaskStudy& study, Progress& progress, numerics::ValueLog* log = nullptr);
+[[nodiscard]] MuscleAnalysis identify(const TaskStudy& study, Progress& progress, numerics::ValueLog* log = nullptr,
+                                      const numerics::Ranks& ranks = {});
 
 /// An estimate on the tasks of a study, all of them unseen. @throws InputError when it names no unknown of the study.
 [[nodiscard]] MuscleAnalysis validate(const TaskStudy& study, const estimation::Estimate& estimate, Progress& progress);

@@ -3,16 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
-#include <chrono>
 #include <ctime>
-#include <stdexcept>
-#include <thread>
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/numerics/batches/block_file.hpp"
+#include "veridyn/numerics/batches/fingerprint.hpp"
 #include "veridyn/numerics/parallel.hpp"
+#include "veridyn/numerics/ranks/shared_work.hpp"
 
 namespace veridyn::numerics {
 
@@ -59,6 +59,44 @@ std::string quoted(const std::vector<std::string>& lines, std::size_t i) {
                                      : fmt::format("'{}...'", lines[i].substr(0, kLongest));
 }
 
+/// Of what all processes compute together.
+std::uint64_t key_of(const Batch& batch) {
+  Fingerprint key;
+  key.add(batch.name);
+  for (const std::size_t number : {batch.items, batch.items_per_block, batch.values_per_item})
+    key.add(static_cast<std::uint64_t>(number));
+  key.add(batch.fingerprint);
+  return key.value();
+}
+
+/// The number of an item in; its processor time and its values out.
+SharedWork::Compute item_of(const Batch& batch) {
+  return [&batch](std::span<const double> request, std::vector<double>& reply) {
+    const auto item = static_cast<std::size_t>(request.front());
+    reply.assign(1 + batch.values_per_item, 0.0);
+    const double begun = thread_seconds();
+    if (batch.fill) {
+      batch.fill(item, std::span(reply).subspan(1));
+    } else {
+      reply[1] = batch.value(item);
+    }
+    reply.front() = thread_seconds() - begun;
+  };
+}
+
+/// A complete result as one list of numbers, and back.
+std::vector<double> packed(const BatchValues& result) {
+  std::vector<double> all = {result.processor_seconds};
+  all.insert(all.end(), result.values.begin(), result.values.end());
+  return all;
+}
+
+BatchValues unpacked(std::vector<double> all) {
+  const double seconds = all.front();
+  all.erase(all.begin());
+  return {.values = std::move(all), .processor_seconds = seconds};
+}
+
 }  // namespace
 
 /// View of a batch at work, with what is there of its blocks: the batch must outlive it.
@@ -91,15 +129,9 @@ struct BlockStore::Round {
   std::vector<double> values;
 };
 
-BlockStore::BlockStore() = default;
-BlockStore::~BlockStore() = default;
-BlockStore::BlockStore(BlockStore&&) noexcept = default;
-BlockStore& BlockStore::operator=(BlockStore&&) noexcept = default;
-
-BlockStore::BlockStore(fs::path folder, const Identity& identity, const ProcessShare& share)
-    : folder_(std::move(folder)), share_(share) {
+BlockStore::BlockStore(fs::path folder, const Identity& identity, const ProcessShare& share, Ranks ranks)
+    : folder_(std::move(folder)), share_(share), ranks_(std::move(ranks)) {
   open(identity);
-  companions_ = std::make_unique<Companions>(folder_, share_);
 }
 
 void BlockStore::open(const Identity& identity) const {
@@ -108,7 +140,7 @@ void BlockStore::open(const Identity& identity) const {
   const std::vector<std::string> here = manifest_lines(identity);
   if (!fs::exists(path)) {
     for (const auto& entry : fs::directory_iterator(folder_)) {
-      // Another process may be beginning the same folder; what it writes comes after its manifest.
+      // Another share may be beginning the same folder; what it writes comes after its manifest.
       if (!entry.path().filename().string().starts_with(kManifest) && !fs::exists(path))
         throw InputError(folder_.string(), fmt::format("holds {} and is no checkpoint; choose a new or an empty folder",
                                                        entry.path().filename().string()));
@@ -163,7 +195,7 @@ bool BlockStore::read(Round& round, std::size_t block, bool warn) {
   return true;
 }
 
-bool BlockStore::compute_share(Round& round, Progress& progress) const {
+bool BlockStore::compute_share(Round& round, SharedWork& work, Progress& progress) const {
   std::vector<std::size_t> mine;
   std::size_t items = 0, done_before = 0;
   for (std::size_t b = 0; b < round.blocks; ++b) {
@@ -196,50 +228,28 @@ bool BlockStore::compute_share(Round& round, Progress& progress) const {
   const auto one = [&](std::size_t item) {
     const std::size_t k = item / batch.items_per_block;  // only the last block is short
     const std::size_t i = round.first(mine[k]) + item % batch.items_per_block;
-    const double begun = thread_seconds();
-    if (batch.fill) {
-      batch.fill(i, std::span(round.values).subspan(i * batch.values_per_item, batch.values_per_item));
-    } else {
-      round.values[i] = batch.value(i);
-    }
-    seconds[item] = thread_seconds() - begun;
+    std::vector<double> reply;
+    work.ask(std::array{static_cast<double>(i)}, reply);
+    seconds[item] = reply.front();
+    std::copy(reply.begin() + 1, reply.end(),
+              round.values.begin() + static_cast<std::ptrdiff_t>(i * batch.values_per_item));
     if (--left[k] == 0) finish(k);
   };
-  return parallel_for(items, progress.threads(), one,
+  return parallel_for(items, work.threads(), one,
                       [&](std::size_t done) { return progress.update(round.fraction(done_before + done)); });
 }
 
-bool BlockStore::wait_for_others(Round& round, Progress& progress) {
-  using namespace std::chrono_literals;
-  progress.stage(fmt::format("waiting for {} blocks of other processes", round.absent()));
-  for (auto pause = 10ms; round.absent() > 0; pause = std::min(pause * 2, std::chrono::milliseconds(500))) {
-    std::this_thread::sleep_for(pause);
-    std::size_t done = 0;
-    for (std::size_t b = 0; b < round.blocks; ++b) {
-      const std::size_t owner = share_.owner(b);
-      if (round.there[b] == 0) {
-        if (read(round, b, false))
-          companions_->arrived(owner);
-        else
-          static_cast<void>(companions_->wait_for(owner, fmt::format("{} blocks are missing", round.absent())));
-      }
-      if (round.there[b] != 0) done += round.size(b);
-    }
-    if (!progress.update(round.fraction(done))) return false;
-  }
-  return true;
-}
-
 BatchValues BlockStore::compute(const Batch& batch, Progress& progress) {
+  SharedWork work(ranks_, key_of(batch), progress.threads(), item_of(batch));
+  if (!ranks_.first()) return unpacked(work.serve());
   Round round(batch);
   missing_ = 0;
   last_blocks_ = round.blocks;
   blocks_ += round.blocks;
   for (std::size_t b = 0; b < round.blocks; ++b) found_ += read(round, b, true) ? 1U : 0U;
-  bool proceed = compute_share(round, progress);
-  if (proceed && round.absent() > 0 && share_.wait) proceed = wait_for_others(round, progress);
+  const bool proceed = compute_share(round, work, progress);
   if (proceed) {
-    // Others may have gone on meanwhile.
+    // Other shares may have gone on meanwhile.
     for (std::size_t b = 0; b < round.blocks; ++b) {
       if (round.there[b] == 0) static_cast<void>(read(round, b, false));
     }
@@ -247,6 +257,7 @@ BatchValues BlockStore::compute(const Batch& batch, Progress& progress) {
   }
   BatchValues result{.values = std::move(round.values), .completed = proceed && missing_ == 0};
   for (const double s : round.seconds) result.processor_seconds += s;
+  if (result.completed) work.finish(packed(result));
   return result;
 }
 

@@ -3,17 +3,18 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "veridyn/core/progress.hpp"
-#include "veridyn/numerics/batches/companions.hpp"
 #include "veridyn/numerics/batches/process_share.hpp"
+#include "veridyn/numerics/ranks/ranks.hpp"
 
 namespace veridyn::numerics {
+
+class SharedWork;
 
 /// Independent items with a number each, or several, whatever they are.
 struct Batch {
@@ -31,46 +32,47 @@ struct Batch {
 struct BatchValues {
   std::vector<double> values;      ///< by item, those of an item together; complete only if `completed`
   double processor_seconds = 0.0;  ///< of all threads and processes, and of earlier runs that are continued
-  /// False: the progress asked to stop, or blocks of others are missing (`BlockStore::missing`).
+  /// False: the progress asked to stop, or blocks of other shares are missing (`BlockStore::missing`).
   bool completed = true;
 };
 
 /// Values of batches computed block by block; each finished block is a file in a folder, which makes long work
-/// resumable and lets several processes share it: what has its block there is read, with the same bits, and not
-/// computed.
+/// resumable: what has its block there is read, with the same bits, and not computed. Shares of it may be computed at
+/// different times.
 ///
 ///     FOLDER/checkpoint.txt            what all batches follow from
 ///     FOLDER/sampling-000000.block     `write_block`
-///     FOLDER/process-1.alive           `Companions`: one of several processes
 ///
-/// Files appear whole or not at all. Damaged ones are computed again.
+/// Files appear whole or not at all. Damaged ones are computed again. Of several processes that a launcher started all
+/// compute, and the first alone reads and writes the folder.
 class BlockStore {
  public:
   /// What the values follow from, by name: version, study, files. Lines may have the same name.
   using Identity = std::vector<std::pair<std::string, std::string>>;
 
   /// Keeps nothing and computes everything.
-  BlockStore();
+  BlockStore() = default;
+  /// Keeps nothing, and computes everything together with the other processes.
+  explicit BlockStore(Ranks ranks) : ranks_(std::move(ranks)) {}
   /// Opens or begins a folder.
   /// @throws InputError where it holds something else, or results of another identity: with the first line that
   /// differs; where it cannot be written.
   /// @param share  of the blocks of every batch
-  BlockStore(std::filesystem::path folder, const Identity& identity, const ProcessShare& share = {});
-  ~BlockStore();
-  BlockStore(BlockStore&&) noexcept;
-  BlockStore& operator=(BlockStore&&) noexcept;
+  /// @param ranks  with which every batch is computed; this process is their first
+  BlockStore(std::filesystem::path folder, const Identity& identity, const ProcessShare& share = {}, Ranks ranks = {});
 
-  /// Reads what is there of a batch, and computes this process' share of the rest on the progress' threads. Values and
-  /// their bits do not depend on the share, the number of threads or earlier runs.
-  /// @throws InputError where a block was computed from something else; std::runtime_error where a process that is
-  /// waited for shows no life, or the disk is full.
+  /// Reads what is there of a batch, and computes its share of the rest on the progress' threads and in the other
+  /// processes, all of which call it and return the same values. Values and their bits do not depend on share, threads,
+  /// processes or earlier runs.
+  /// @throws InputError where a block was computed from something else, or another process computes something else;
+  /// std::runtime_error where the disk is full, or another process failed.
   [[nodiscard]] BatchValues compute(const Batch& batch, Progress& progress);
 
   /// Of all batches so far.
   [[nodiscard]] std::size_t blocks() const { return blocks_; }
-  [[nodiscard]] std::size_t found() const { return found_; }  ///< when their batch began: of earlier runs or others
+  [[nodiscard]] std::size_t found() const { return found_; }  ///< when their batch began: of earlier runs or shares
   [[nodiscard]] std::size_t last_blocks() const { return last_blocks_; }  ///< of the last batch
-  /// Of the last batch: what other processes have yet to compute. 0 too when the progress asked to stop.
+  /// Of the last batch: what other shares have yet to compute. 0 too when the progress asked to stop.
   [[nodiscard]] std::size_t missing() const { return missing_; }
   /// Sentences: blocks that were damaged.
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
@@ -82,12 +84,11 @@ class BlockStore {
   /// Whether it is there; its values are then in the round.
   bool read(Round& round, std::size_t block, bool warn);
   /// Whether all were done.
-  [[nodiscard]] bool compute_share(Round& round, Progress& progress) const;
-  [[nodiscard]] bool wait_for_others(Round& round, Progress& progress);
+  [[nodiscard]] bool compute_share(Round& round, SharedWork& work, Progress& progress) const;
 
   std::filesystem::path folder_;  ///< empty: keeps nothing
   ProcessShare share_;
-  std::unique_ptr<Companions> companions_;
+  Ranks ranks_;
   std::vector<std::string> warnings_;
   std::size_t blocks_ = 0, found_ = 0, last_blocks_ = 0, missing_ = 0;
 };
