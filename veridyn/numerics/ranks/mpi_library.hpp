@@ -23,6 +23,7 @@ struct MpiLibrary {
 
 /// The library's only name: fills in the table above.
 using MpiLibraryEntry = void (*)(MpiLibrary& library);
+/// How it is called there.
 inline constexpr const char* kMpiLibraryEntry = "veridyn_mpi_library";
 
 /// Connects this process by MPI to those that a launcher started with it. Once in a process.
