@@ -54,7 +54,7 @@ format-check: setup
 	@git ls-files -co --exclude-standard '*.cpp' '*.hpp' | xargs clang-format --dry-run -Werror
 	@node tools/wrap_markdown.mjs --check
 
-TIDY ?= veridyn apps/veridyn
+TIDY ?= veridyn bench/reproduction apps/veridyn
 
 tidy: setup ## clang-tidy on every module; TIDY="veridyn/io" for one, TIDY="$(tools/changed_folders.sh)" for what changed
 	@node tools/unnamed_names.mjs
@@ -63,7 +63,7 @@ tidy: setup ## clang-tidy on every module; TIDY="veridyn/io" for one, TIDY="$(to
 
 # What reads bytes of strangers: whole modules, and folders of the others with test binaries of their own.
 READERS := core io recording camera live osim tyre road
-ASAN_MODULES ?= core numerics estimation io camera recording aircraft vehicle tyre road muscle osim cueing live report apps
+ASAN_MODULES ?= core numerics estimation io camera recording aircraft vehicle tyre road muscle osim cueing live report reproduction apps
 # One full run of each domain.
 ASAN_RUNS := example_several_flights|example_vehicle_identify_sweep|example_muscle_emg|example_cueing_knobs
 
@@ -79,13 +79,14 @@ asan-readers: setup ## the same for what reads files and packets of others, and 
 	$(call run_tests,build/asan) -R '^($(ASAN_RUNS))$$'
 
 # What runs in threads beside each other, by module. The sanitizer's shadow memory wants addresses that are not shuffled.
-TSAN_MODULES ?= live numerics estimation io recording aircraft apps
+TSAN_MODULES ?= live numerics estimation io recording aircraft reproduction apps
 TSAN_live := TripleBuffer.*:LiveLoop*:RunningLoop*:LivePage*:LiveRecorder*:*Teleoperation*:*PseudoTerminal*
 TSAN_numerics := ParallelFor*:BlockStore*:Ranks*:SharedWork*:ValueLog*
 TSAN_estimation := Smoother*:OpenLoop*:BatchEvaluator*:SharedModel*:*NumberOfThreads*:*UsesTheThreads*
 TSAN_io := PlainRows*
 TSAN_recording := SampleEvidence*:StudyData*
-TSAN_aircraft := OpenLoop.IsTheSame*:BatchExperiment.IsTheSame*:FlightSensitivity.IsTheSame*:Reconstruct.GivesTheSame*:ModelFreeEngine*:RecordingEvidence.OfAClean*:AircraftStudy.IdentifiesWhat*
+TSAN_aircraft := OpenLoop.IsTheSame*:FlightSensitivity.IsTheSame*:Reconstruct.GivesTheSame*:ModelFreeEngine*:RecordingEvidence.OfAClean*:AircraftStudy.IdentifiesWhat*
+TSAN_reproduction := BatchExperiment.IsTheSame*
 TSAN_apps := Program.GivesTheSameBytes*:Program.IdentifiesARecordingWrittenByItself:VehicleProgram.SameSeed*
 
 tsan: setup ## tests of what runs in threads under the thread sanitizer; TSAN_MODULES="live" for one module

@@ -1,5 +1,6 @@
-// The API reference, build/docs/html: Doxygen over the headers, with a page for each module and sub-module. The sentence of
-// a folder comes from the lists of docs/architecture.md, that of a header from its own comments, so nothing is said twice.
+// The API reference, build/docs/html: Doxygen over the headers of the library, with a page for each module and sub-module; the
+// headers of bench/reproduction are checked like them and have no page, since they are not installed. The sentence of a folder
+// comes from the lists of docs/architecture.md, that of a header from its own comments, so nothing is said twice.
 // Fails where a folder has no sentence or a sentence no folder, where Doxygen warns, where a type or a free function of the
 // modules in `complete` has no comment (but `to_string`, whose name says all), and where a document names a file or links
 // to a heading that does not exist.
@@ -9,7 +10,7 @@ import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { basename, dirname, join } from 'node:path';
 
 // Modules whose types and free functions all have comments; the others are counted. Add a module when it is done.
-const complete = ['core', 'numerics', 'estimation', 'io', 'recording', 'aircraft', 'vehicle', 'muscle', 'cueing', 'report'];
+const complete = ['core', 'numerics', 'estimation', 'io', 'recording', 'aircraft', 'vehicle', 'muscle', 'cueing', 'report', 'reproduction'];
 
 const output = process.argv[2] ?? 'build/docs';
 if (output.startsWith('-')) {
@@ -18,17 +19,19 @@ if (output.startsWith('-')) {
 }
 const architecture = 'docs/architecture.md';
 
-const files = execFileSync('git', ['ls-files', '-co', '--exclude-standard', 'veridyn'], { encoding: 'utf8' }).split('\n');
+const files = execFileSync('git', ['ls-files', '-co', '--exclude-standard', 'veridyn', 'bench/reproduction'], { encoding: 'utf8' }).split('\n');
 const headers = files.filter((file) => file.endsWith('.hpp')).sort();
 const folders = new Set(headers.map((header) => dirname(header)));
 for (const folder of [...folders]) {
   if (dirname(folder) !== 'veridyn') folders.add(dirname(folder));
 }
 
+const installed = (path) => path.startsWith('veridyn/');
+
 /// The sentences of the folders: items "- `veridyn/x/y`: sentence" of the lists of modules, over one or more lines.
 function readSentences() {
   const sentences = new Map();
-  for (const [, folder, text] of readFileSync(architecture, 'utf8').matchAll(/^- `(veridyn(?:\/[a-z0-9_]+)+)`: (.+(?:\n  \S.*)*)/gm)) {
+  for (const [, folder, text] of readFileSync(architecture, 'utf8').matchAll(/^- `(veridyn(?:\/[a-z0-9_]+)+|bench\/reproduction(?:\/[a-z]+)?)`: (.+(?:\n  \S.*)*)/gm)) {
     sentences.set(folder, text.replace(/\n\s*/g, ' '));
   }
   return sentences;
@@ -102,10 +105,10 @@ const plain = (text) => text.replaceAll('\\', '\\\\').replaceAll('@', '\\@').rep
 let pages = '';
 for (const header of headers) {
   const sentence = headerSentence(header);
-  pages += `/** \\file ${header}\n *  \\brief ${plain(sentence ?? '')}\n */\n`;
+  if (installed(header)) pages += `/** \\file ${header}\n *  \\brief ${plain(sentence ?? '')}\n */\n`;
   if (!sentence) problems.push(`${header}: has no comment that says what it is`);
 }
-for (const folder of [...folders].sort()) {
+for (const folder of [...folders].filter(installed).sort()) {
   const inside = headers.filter((header) => dirname(header) === folder);
   const sentence = sentences.get(folder) ?? '';
   const id = folder.replaceAll('/', '_');
@@ -131,9 +134,9 @@ for (const name of ['', ...[...folders].filter((f) => dirname(f) === 'veridyn').
 mkdirSync(output, { recursive: true });
 writeFileSync(join(output, 'modules.dox'), pages);
 
-/// Runs Doxygen with docs/Doxyfile and these settings on top; returns its warnings.
-function doxygen(settings) {
-  const configuration = readFileSync('docs/Doxyfile', 'utf8') + `\nOUTPUT_DIRECTORY = ${output}\nINPUT = veridyn ${output}/modules.dox\n` + settings;
+/// Runs Doxygen over `input` with docs/Doxyfile and these settings on top; returns its warnings.
+function doxygen(input, settings) {
+  const configuration = readFileSync('docs/Doxyfile', 'utf8') + `\nOUTPUT_DIRECTORY = ${output}\nINPUT = ${input} ${output}/modules.dox\n` + settings;
   const run = spawnSync('doxygen', ['-'], { input: configuration, encoding: 'utf8', maxBuffer: 1 << 28 });
   if (run.error) throw new Error(`doxygen cannot be run (${run.error.message}); \`make setup\` installs it`);
   const warnings = run.stderr.split('\n').filter((line) => line.trim() !== '');
@@ -142,13 +145,13 @@ function doxygen(settings) {
 }
 
 const version = readFileSync('CMakeLists.txt', 'utf8').match(/VERSION (\d+\.\d+\.\d+)/)?.[1] ?? '';
-problems.push(...doxygen(`PROJECT_NUMBER = ${version}\nEXTRACT_ALL = YES\nWARN_AS_ERROR = FAIL_ON_WARNINGS\n`));
-const undocumented = doxygen('GENERATE_HTML = NO\nEXTRACT_ALL = NO\nWARN_IF_UNDOCUMENTED = YES\n').filter(
+problems.push(...doxygen('veridyn', `PROJECT_NUMBER = ${version}\nEXTRACT_ALL = YES\nWARN_AS_ERROR = FAIL_ON_WARNINGS\n`));
+const undocumented = doxygen('veridyn bench/reproduction', 'GENERATE_HTML = NO\nEXTRACT_ALL = NO\nWARN_IF_UNDOCUMENTED = YES\n').filter(
   (line) => !/Member to_string\(/.test(line) && (/Compound \S+.* is not documented/.test(line) || /\((function|variable|typedef|enumeration)\) of (namespace|file) .* is not documented/.test(line)),
 );
 const inModules = new Map();
 for (const line of undocumented) {
-  const module = line.match(/^veridyn\/(\w+)\//)?.[1];
+  const module = line.match(/^(?:veridyn|bench)\/(\w+)\//)?.[1];
   if (complete.includes(module)) problems.push(line);
   else inModules.set(module, (inModules.get(module) ?? 0) + 1);
 }

@@ -1,7 +1,7 @@
 // Names in unnamed namespaces differ within a folder, since its sources are compiled together (veridyn_compile_together in
 // cmake/VeridynBuild.cmake), those of a folder with fewer than three as part of the folder above. Prints each name that two
 // sources of such a unit have, with both places; exit code 1 where there is one. Overloads may have one name.
-//   node tools/unnamed_names.mjs [FOLDER...]   (default: every module, the program, and their tests)
+//   node tools/unnamed_names.mjs [FOLDER...]   (default: every module, the reproductions, the program, and their tests)
 import { readdirSync, readFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 
@@ -101,7 +101,7 @@ function unnamed(path) {
 }
 
 const given = process.argv.slice(2);
-const modules = given.length > 0 ? given : [...folders('veridyn'), ...folders('apps'), ...folders('tests')];
+const modules = given.length > 0 ? given : [...folders('veridyn'), 'bench/reproduction', ...folders('apps'), ...folders('tests')];
 let faults = 0;
 for (const module of modules) {
   const paths = sources(module).sort();

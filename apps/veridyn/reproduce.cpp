@@ -8,15 +8,15 @@
 #include "apps/veridyn/output_folder.hpp"
 #include "apps/veridyn/reproduce_studies.hpp"
 #include "apps/veridyn/version.hpp"
-#include "veridyn/aircraft/reproduction/reproduction.hpp"
+#include "bench/reproduction/aircraft/reproduction.hpp"
+#include "bench/reproduction/report/aircraft_reproduction_report.hpp"
+#include "bench/reproduction/report/cueing_reproduction_report.hpp"
+#include "bench/reproduction/report/muscle_reproduction_report.hpp"
+#include "bench/reproduction/report/vehicle_reproduction_report.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/nearest.hpp"
-#include "veridyn/report/aircraft_reproduction.hpp"
-#include "veridyn/report/cueing_reproduction_report.hpp"
 #include "veridyn/report/document/html.hpp"
-#include "veridyn/report/muscle_reproduction_report.hpp"
-#include "veridyn/report/vehicle_reproduction_report.hpp"
 
 namespace veridyn::app {
 namespace {

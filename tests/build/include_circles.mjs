@@ -1,6 +1,6 @@
-// Fails where files or folders of the library include each other in a circle, a folder taken with all below it too; where a
-// file includes one of the folder above its own; or where a module includes one that is not to its left in the line of
-// layers of docs/architecture.md ("core < numerics < ... < (aircraft, vehicle, muscle) < ...").
+// Fails where files or folders of the library, the reproductions and the program include each other in a circle, a folder taken
+// with all below it too; where a file includes one of the folder above its own; or where a module includes one that is not to
+// its left in the line of layers of docs/architecture.md ("core < numerics < ... < (aircraft, vehicle, muscle) < ...").
 //   node include_circles.mjs SOURCE_FOLDER
 import { readdirSync, readFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
@@ -14,7 +14,7 @@ function sources(folder) {
     return /\.[ch]pp$/.test(entry.name) ? [path] : [];
   });
 }
-const files = ['veridyn', 'apps'].flatMap(sources);
+const files = ['veridyn', 'bench/reproduction', 'apps'].flatMap(sources);
 
 /// The edges of a graph as a map from each node to those that it includes, itself left out.
 function graph(edges) {
@@ -71,8 +71,9 @@ function layers() {
 }
 
 const edges = files.flatMap((file) =>
-  [...readFileSync(join(root, file), 'utf8').matchAll(/^\s*#\s*include "((?:veridyn|apps)\/[^"]+)"/gm)].map(([, included]) => [file, included]),
+  [...readFileSync(join(root, file), 'utf8').matchAll(/^\s*#\s*include "((?:veridyn|bench|apps)\/[^"]+)"/gm)].map(([, included]) => [file, included]),
 );
+// bench/reproduction counts as the module `reproduction`.
 const moduleOf = (file) => (file.startsWith('apps/') ? 'apps' : file.split('/')[1]);
 const faults = [];
 for (const [what, named] of [['files', (file) => file], ['folders', dirname]]) {
