@@ -11,6 +11,8 @@
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
+#include "veridyn/core/rank.hpp"
 
 namespace veridyn::numerics {
 namespace {
@@ -247,10 +249,9 @@ double rms(std::span<const double> x) {
 double median(std::span<const double> x) {
   std::vector<double> v = finite_values(x);
   if (v.empty()) return kNaN;
-  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::nth_element(v.begin(), middle, v.end());
-  if (v.size() % 2 == 1) return *middle;
-  return 0.5 * (*middle + *std::max_element(v.begin(), middle));
+  const double upper = upper_median(v);
+  if (v.size() % 2 == 1) return upper;
+  return 0.5 * (upper + *std::max_element(v.begin(), v.begin() + signed_index(v.size() / 2)));
 }
 
 double robust_sd(std::span<const double> x) {

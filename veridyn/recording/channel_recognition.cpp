@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/rank.hpp"
 #include "veridyn/core/text.hpp"
 
 namespace veridyn::recording {
@@ -66,10 +67,8 @@ Spread spread_of(const Channel& channel) {
   for (const double v : channel.value)
     if (std::isfinite(v)) values.push_back(v);
   if (values.empty()) return {};
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  return {*low, *middle, *high};
+  const auto [low, high] = std::ranges::minmax(values);
+  return {low, upper_median(values), high};
 }
 
 /// A unit and how it is known; "?" with what it may be.

@@ -10,6 +10,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/core/rank.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::recording {
@@ -268,10 +269,7 @@ Exchange exchanged(const DriveMotion& m, const Values& speed_change, const Value
 
 double median_of(Values values) {
   std::erase_if(values, [](double v) { return !std::isfinite(v); });
-  if (values.empty()) return kNaN;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return values.empty() ? kNaN : upper_median(values);
 }
 
 std::vector<Compared> compare(const DriveMotion& m) {

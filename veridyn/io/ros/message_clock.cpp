@@ -1,7 +1,8 @@
 #include "veridyn/io/ros/message_clock.hpp"
 
-#include <algorithm>
 #include <cstdint>
+
+#include "veridyn/core/rank.hpp"
 
 namespace veridyn::io::internal {
 namespace {
@@ -19,9 +20,7 @@ Nanoseconds sum(Nanoseconds a, Nanoseconds b) {
 }
 
 Nanoseconds least_delay(std::vector<Nanoseconds> delays) {
-  const auto rank = delays.begin() + static_cast<std::ptrdiff_t>(delays.size() / 100);
-  std::nth_element(delays.begin(), rank, delays.end());
-  return *rank;
+  return value_of_rank(delays, delays.size() / 100);
 }
 
 }  // namespace
