@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "veridyn/io/results/json_text.hpp"
+
 namespace veridyn::app {
 
 struct SummaryWriter {
@@ -62,7 +64,7 @@ void Summary::push_back(Summary element) {
 }
 
 std::string Summary::to_json() const {
-  return SummaryWriter::tree(*this).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return io::json_text(SummaryWriter::tree(*this), 2);
 }
 
 }  // namespace veridyn::app

@@ -146,15 +146,6 @@ void share_unit_of_gravity(std::vector<RecognisedChannel>& found) {
   }
 }
 
-std::string toml_text(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c == '\n' ? "\\n" : c == '\t' ? "\\t" : std::string(1, c);
-  }
-  return out + '"';
-}
-
 /// A name in a comment, which ends with its line.
 std::string on_one_line(std::string text) {
   std::replace_if(
