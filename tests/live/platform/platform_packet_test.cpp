@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "veridyn/io/packets/crc32.hpp"
-#include "veridyn/live/link/bytes.hpp"
+#include "veridyn/core/bytes.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::live {

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "veridyn/io/packets/crc32.hpp"
-#include "veridyn/live/link/bytes.hpp"
+#include "veridyn/core/bytes.hpp"
 
 namespace veridyn::live {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "veridyn/io/packets/crc32.hpp"
-#include "veridyn/live/link/bytes.hpp"
+#include "veridyn/core/bytes.hpp"
 
 namespace veridyn::live {
 namespace {
