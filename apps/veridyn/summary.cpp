@@ -63,8 +63,6 @@ void Summary::push_back(Summary element) {
   std::get<Array>(value_).push_back(std::move(element));
 }
 
-std::string Summary::to_json() const {
-  return io::json_text(SummaryWriter::tree(*this), 2);
-}
+std::string Summary::to_json() const { return io::json_text(SummaryWriter::tree(*this), 2); }
 
 }  // namespace veridyn::app

@@ -146,11 +146,11 @@ std::string work_in(const fs::path& folder, const std::string& before) {
   const std::optional<json> run = object_in(folder / "run.json");
   if (!run || run->value("program", "") != "veridyn") return before;
   return io::json_text(json{{"folder", folder.string()},
-                  {"command", run->value("command", "")},
-                  {"study", run->value("study", "")},
-                  {"state", "done"},
-                  {"note", last.value("note", "")},
-                  {"of", of}});
+                            {"command", run->value("command", "")},
+                            {"study", run->value("study", "")},
+                            {"state", "done"},
+                            {"note", last.value("note", "")},
+                            {"of", of}});
 }
 
 }  // namespace veridyn::app

@@ -234,7 +234,8 @@ class McapReader {
       ++log_.damage.records_lost;
       return;
     }
-    messages_.add(topic, static_cast<Nanoseconds>(load_number<std::uint64_t>(body.data() + 6)), body.substr(kMessageSize));
+    messages_.add(topic, static_cast<Nanoseconds>(load_number<std::uint64_t>(body.data() + 6)),
+                  body.substr(kMessageSize));
   }
 
   void take_chunk(std::string_view body) {

@@ -19,9 +19,7 @@ Nanoseconds sum(Nanoseconds a, Nanoseconds b) {
   return static_cast<Nanoseconds>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
 }
 
-Nanoseconds least_delay(std::vector<Nanoseconds> delays) {
-  return value_of_rank(delays, delays.size() / 100);
-}
+Nanoseconds least_delay(std::vector<Nanoseconds> delays) { return value_of_rank(delays, delays.size() / 100); }
 
 }  // namespace
 

@@ -240,7 +240,8 @@ class Walker {
         subscription.session = formats_.size() - 1;
         subscription.instance = static_cast<unsigned char>(body[0]);
         subscription.name = std::string(body.substr(3, body.substr(3).find('\0')));
-        subscription_of_[load_number<std::uint16_t>(body.data() + 1)] = static_cast<std::int32_t>(subscriptions_.size());
+        subscription_of_[load_number<std::uint16_t>(body.data() + 1)] =
+            static_cast<std::int32_t>(subscriptions_.size());
         subscriptions_.push_back(std::move(subscription));
         break;
       }

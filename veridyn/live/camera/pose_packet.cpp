@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <span>
 
-#include "veridyn/io/packets/crc32.hpp"
 #include "veridyn/core/bytes.hpp"
+#include "veridyn/io/packets/crc32.hpp"
 
 namespace veridyn::live {
 namespace {

@@ -23,9 +23,7 @@ std::string_view name_of(PageControls controls) {
   return "none";
 }
 
-std::string quoted(const std::string& text) {
-  return io::json_text(nlohmann::json(text));
-}
+std::string quoted(const std::string& text) { return io::json_text(nlohmann::json(text)); }
 
 }  // namespace
 

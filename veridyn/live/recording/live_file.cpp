@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "veridyn/core/bytes.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/packets/crc32.hpp"
-#include "veridyn/core/bytes.hpp"
 
 namespace veridyn::live {
 namespace {

@@ -313,14 +313,14 @@ std::vector<Metric> manoeuvre_metrics(const VehicleTrajectory& t, const Manoeuvr
   std::vector<Metric> list;
   switch (manoeuvre.kind) {
     case ManoeuvreKind::kStepSteer:
-      if (t.end == SimulationEnd::kCompleted) list = step_steer_metrics(t);
+      if (t.end == DriveEnd::kCompleted) list = step_steer_metrics(t);
       break;
     case ManoeuvreKind::kSineWithDwell:
       list = sine_with_dwell_metrics(t);
       break;
     case ManoeuvreKind::kSweep:
     case ManoeuvreKind::kRandomSteer:
-      if (t.end == SimulationEnd::kCompleted && t.size() >= 64) {
+      if (t.end == DriveEnd::kCompleted && t.size() >= 64) {
         // No higher than the samples allow, and nothing from a drive too short for the band.
         const double duration = t.time.back() - t.time.front();
         const double high = std::min(manoeuvre.end_frequency, 0.5 * static_cast<double>(t.size() - 1) / duration);
