@@ -7,6 +7,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/core/rank.hpp"
+#include "veridyn/numerics/moments.hpp"
 
 namespace veridyn::aircraft::internal {
 namespace {
@@ -51,11 +52,7 @@ Channel density_of(const FlightStreams& s, const Recording& recording) {
 }
 
 /// Mean dynamic pressure [Pa].
-double mean_pressure(const FlightStreams& s) {
-  double sum = 0.0;
-  for (const double v : s.sensors[kPitot].v) sum += v;
-  return s.sensors[kPitot].v.empty() ? 0.0 : sum / static_cast<double>(s.sensors[kPitot].v.size());
-}
+double mean_pressure(const FlightStreams& s) { return numerics::mean(s.sensors[kPitot].v); }
 
 /// What the checks say of an error; nothing where they do not determine it.
 std::optional<Found> found_of(int error, const AirDataConsistency& air, const std::optional<VaneSlope>& slope,
