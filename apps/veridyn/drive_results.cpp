@@ -190,7 +190,7 @@ PreparedDrive prepare_drive(const Study& study, Progress& progress) {
   if (!vehicle.sensors) vehicle.sensors = reference_drive_sensors();
   progress.stage(fmt::format("driving {:.0f} s of {}", vehicle.simulation.duration, vehicle.vehicle.name));
   drive.run = run_simulation_study(vehicle, progress);
-  if (drive.run->trajectory.end == SimulationEnd::kInterrupted) throw Interrupted();
+  if (drive.run->trajectory.end == vehicle::DriveEnd::kInterrupted) throw Interrupted();
   if (!drive.run->trajectory.usable()) throw std::runtime_error(drive.run->trajectory.message());
   Recording measured = *drive.run->measured;
   measured.source = "simulated drive";

@@ -11,6 +11,7 @@
 #include "apps/veridyn/vehicle_template.hpp"
 #include "veridyn/aircraft/sensors/channel_map.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/text.hpp"
 #include "veridyn/recording/channel_recognition.hpp"
 #include "veridyn/recording/study_data.hpp"
 #include "veridyn/vehicle/identification/signals/drive_log.hpp"
@@ -130,12 +131,7 @@ std::string quoted_path(const std::string& file, const std::filesystem::path& fo
   // A file that is there is named from the study's folder; a name to be filled in stays as it is.
   if (path.is_relative() && fs::exists(path, error))
     path = fs::proximate(fs::absolute(path), fs::absolute(folder), error);
-  std::string quoted = "\"";
-  for (const char c : path.string()) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += c;
-  }
-  return quoted + '"';
+  return toml_text(path.string());
 }
 
 /// A template with `mark` replaced.

@@ -19,7 +19,7 @@ int simulate_aircraft(const StudyRun& run) {
   TerminalProgress progress = progress_of(run.options());
   progress.stage(fmt::format("simulating {:.0f} s of {}", simulation.duration, simulation.subject.name));
   const aircraft::SimulatedFlight flight = aircraft::simulate(simulation, progress);
-  if (flight.end == SimulationEnd::kInterrupted) throw Interrupted();
+  if (flight.end == aircraft::FlightEnd::kInterrupted) throw Interrupted();
   if (!flight.usable()) throw std::runtime_error(flight.message());
   folder.write("truth.csv", io::to_csv(flight.truth));
   folder.write("recording.csv", io::to_csv(flight.measured));

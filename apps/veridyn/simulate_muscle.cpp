@@ -120,7 +120,7 @@ int simulate_muscle(const StudyRun& run) {
   const auto seed = static_cast<std::uint64_t>(run.study.root().integer_or("seed", 1));
   const MuscleResult result = run_study(muscles, progress);
   const MuscleTrajectory& t = result.trajectory;
-  if (t.end == SimulationEnd::kInterrupted) throw Interrupted();
+  if (t.end == muscle::MotionEnd::kInterrupted) throw Interrupted();
   progress.stage("writing the results");
   write_results(folder, muscles, result);
   const std::string files = fmt::format("{}", fmt::join(folder.files(), ", "));

@@ -29,7 +29,7 @@ Summary summary_of(const std::filesystem::path& folder, const SimulationStudy& s
   s["vehicle"] = study.vehicle.name;
   s["model"] = to_string(study.model);
   s["manoeuvre"] = to_string(study.manoeuvre.kind);
-  s["completed"] = run.trajectory.end == SimulationEnd::kCompleted;
+  s["completed"] = run.trajectory.end == vehicle::DriveEnd::kCompleted;
   s["message"] = run.trajectory.message();
   s["end_time_s"] = run.trajectory.end_time;
   s["rows"] = run.trajectory.size();
@@ -61,7 +61,7 @@ int simulate_vehicle(const StudyRun& run) {
   progress.stage(fmt::format("driving {:.0f} s of {}", vehicle.simulation.duration, vehicle.vehicle.name));
   const SimulationRun driven = run_simulation_study(vehicle, progress);
   const VehicleTrajectory& trajectory = driven.trajectory;
-  if (trajectory.end == SimulationEnd::kInterrupted) throw Interrupted();
+  if (trajectory.end == vehicle::DriveEnd::kInterrupted) throw Interrupted();
   if (!trajectory.usable()) throw std::runtime_error(trajectory.message());
   folder.write("motion.csv", io::to_csv(to_recording(trajectory)));
   if (driven.measured) folder.write("recording.csv", io::to_csv(*driven.measured));

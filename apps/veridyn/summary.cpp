@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "veridyn/io/results/json_text.hpp"
+
 namespace veridyn::app {
 
 struct SummaryWriter {
@@ -61,8 +63,6 @@ void Summary::push_back(Summary element) {
   std::get<Array>(value_).push_back(std::move(element));
 }
 
-std::string Summary::to_json() const {
-  return SummaryWriter::tree(*this).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-}
+std::string Summary::to_json() const { return io::json_text(SummaryWriter::tree(*this), 2); }
 
 }  // namespace veridyn::app

@@ -12,6 +12,7 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
+#include "veridyn/io/results/json_text.hpp"
 
 namespace veridyn::app {
 
@@ -26,8 +27,6 @@ std::string machine() {
   std::array<char, 256> name{};
   return ::gethostname(name.data(), name.size() - 1) == 0 ? std::string(name.data()) : std::string();
 }
-
-std::string line_of(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
 
 std::optional<json> object_in(const fs::path& file) {
   try {
@@ -127,7 +126,7 @@ void WorkProgress::write() {
                   {"started", started_},  {"stage_began", stage_began_}, {"written", now_s()},
                   {"note", note_},        {"process", ::getpid()},       {"machine", machine()}};
   try {
-    write_file(file_, line_of(j));
+    write_file(file_, io::json_text(j));
   } catch (const std::exception&) {
     file_.clear();  // what the command computes matters more
   }
@@ -135,23 +134,23 @@ void WorkProgress::write() {
 
 std::string work_in(const fs::path& folder, const std::string& before) {
   const json last = before.empty() ? json::object() : json::parse(before, nullptr, false);
-  if (const std::optional<json> p = progress_in(folder)) return line_of(going_on(folder, *p));
+  if (const std::optional<json> p = progress_in(folder)) return io::json_text(going_on(folder, *p));
   const double of = results_of(folder);
   // What is there may be of a run before the one that went on.
   if (last.value("state", "") == "goes on" && of == last.value("of", 0.0)) {
     json j = last;
     j["state"] = "ended without results";
-    return line_of(j);
+    return io::json_text(j);
   }
   if (of == 0.0 || last.value("of", 0.0) == of) return before;
   const std::optional<json> run = object_in(folder / "run.json");
   if (!run || run->value("program", "") != "veridyn") return before;
-  return line_of({{"folder", folder.string()},
-                  {"command", run->value("command", "")},
-                  {"study", run->value("study", "")},
-                  {"state", "done"},
-                  {"note", last.value("note", "")},
-                  {"of", of}});
+  return io::json_text(json{{"folder", folder.string()},
+                            {"command", run->value("command", "")},
+                            {"study", run->value("study", "")},
+                            {"state", "done"},
+                            {"note", last.value("note", "")},
+                            {"of", of}});
 }
 
 }  // namespace veridyn::app

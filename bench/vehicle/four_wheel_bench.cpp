@@ -44,7 +44,7 @@ void drive(benchmark::State& state, const PerWheel<Tyre>& tyres) {
   double driven = 0.0;
   for (auto _ : state) {
     const VehicleTrajectory out = simulate(model, driver, nullptr, simulation, progress);
-    if (out.end != SimulationEnd::kCompleted) state.SkipWithError(out.message().c_str());
+    if (out.end != DriveEnd::kCompleted) state.SkipWithError(out.message().c_str());
     driven += out.end_time;
   }
   state.counters["times_real_time"] = benchmark::Counter(driven, benchmark::Counter::kIsRate);

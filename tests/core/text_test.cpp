@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "veridyn/core/study.hpp"
+
 namespace veridyn {
 namespace {
 
@@ -20,6 +22,14 @@ TEST(Text, IsShownPrintableAndShort) {
 TEST(Text, CapitalsAreThoseOfAscii) { EXPECT_EQ(upper("pac2002_\xc3\xa9"), "PAC2002_\xc3\xa9"); }
 
 TEST(Text, SmallLettersAreThoseOfAscii) { EXPECT_EQ(lower("PAC2002_\xc3\x89"), "pac2002_\xc3\x89"); }
+
+TEST(Text, IsAStringOfToml) {
+  EXPECT_EQ(toml_text("C:\\logs \"new\""), R"("C:\\logs \"new\"")");
+  EXPECT_EQ(toml_text("a\nb\x7f"), R"("a\u000Ab\u007F")");
+  EXPECT_EQ(toml_text("\xc3\xa9"), "\"\xc3\xa9\"");
+  for (const char* text : {"", "two\nlines\twith \"quotes\" and \\", "\x01"})
+    EXPECT_EQ(Study::parse(std::string("name = ") + toml_text(text), "s.toml").root().text("name"), text);
+}
 
 }  // namespace
 }  // namespace veridyn

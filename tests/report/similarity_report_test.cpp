@@ -96,7 +96,7 @@ TEST(DifferenceSection, ComparesEveryDriveAndWarnsOfOneThatEndedEarly) {
   const vehicle::MotionDifference& d = car.analysis.runs[1].differences.at(0);
   ASSERT_GT(d.range, 0.0);
   EXPECT_DOUBLE_EQ(*table.rows[0].cells[2].number, 100.0 * d.largest / d.range);
-  car.analysis.runs[1].trajectory.end = SimulationEnd::kDiverged;
+  car.analysis.runs[1].trajectory.end = vehicle::DriveEnd::kDiverged;
   car.analysis.runs[1].trajectory.end_time = 0.1;
   const std::vector<List> early = test::blocks_of<List>(difference_section(car.analysis).blocks);
   ASSERT_EQ(early.size(), 1U);

@@ -122,13 +122,13 @@ TEST(VehicleReport, ShowsAMetricInSIWhereItStandsInDegPerGToo) {
 
 TEST(VehicleReport, SaysHowADriveEnded) {
   SimulatedCar car = simulated_car("model = \"bicycle\"\nmanoeuvre = \"step steer\"\nspeed = 20\nduration = 1\n");
-  car.run.trajectory.end = SimulationEnd::kDiverged;
+  car.run.trajectory.end = vehicle::DriveEnd::kDiverged;
   const Document diverged = report_of(car);
   EXPECT_EQ(diverged.verdict.level, Level::kBad);
   EXPECT_EQ(diverged.verdict.word, "Ended early");
   EXPECT_TRUE(std::isupper(static_cast<unsigned char>(diverged.verdict.headline.front())) != 0);
   EXPECT_EQ(diverged.verdict.headline.back(), '.');
-  car.run.trajectory.end = SimulationEnd::kCompleted;
+  car.run.trajectory.end = vehicle::DriveEnd::kCompleted;
   car.run.trajectory.lift_offs = {{.wheel = 2, .from = 0.5, .to = 0.75}};
   const Document lifted = report_of(car);
   EXPECT_EQ(lifted.verdict.level, Level::kCaution) << "a wheel left the ground";

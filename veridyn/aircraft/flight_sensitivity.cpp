@@ -201,7 +201,7 @@ estimation::ResponseIndices analyse_flight(const FlightSensitivityStudy& study, 
   const SimulatedFlight flight = simulate(options, progress);
   estimation::ResponseIndices stopped;
   stopped.completed = false;
-  if (flight.end == SimulationEnd::kInterrupted) return stopped;
+  if (flight.end == FlightEnd::kInterrupted) return stopped;
   if (!flight.usable()) throw std::runtime_error(fmt::format("the nominal flight ends early: {}", flight.message()));
   const ChangedFlights flights(study, flight);
   progress.stage(fmt::format("flying it again with {} inputs varied", study.inputs.size()));

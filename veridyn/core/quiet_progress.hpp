@@ -4,8 +4,8 @@
 
 namespace veridyn {
 
-/// View of a progress for one of many parts of its work that go on at once: the part says nothing of itself, uses
-/// `threads` threads and stops when the whole work should.
+/// View of a progress for a part of its work that says nothing of itself: it stops when the whole work should and uses
+/// `threads` threads (0: as many as the machine has), 1 where many such parts go on at once.
 class QuietProgress : public Progress {
  public:
   explicit QuietProgress(const Progress& whole, int threads = 1) : whole_(whole), threads_(threads) {}

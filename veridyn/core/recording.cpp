@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/core/rank.hpp"
 
 namespace veridyn {
 namespace {
@@ -39,9 +39,7 @@ std::optional<double> interval_of_rank(std::span<const double> times, std::size_
   }
   if (middle >= below && middle - below < equal) return low;
   if (middle < below || middle - below >= near.size()) return std::nullopt;
-  const auto wanted = near.begin() + signed_index(middle - below);
-  std::nth_element(near.begin(), wanted, near.end());
-  return *wanted;
+  return value_of_rank(near, middle - below);
 }
 
 double median_interval(std::span<const double> times) {
@@ -52,9 +50,7 @@ double median_interval(std::span<const double> times) {
   }
   std::vector<double> intervals(times.size() - 1);
   for (std::size_t i = 0; i + 1 < times.size(); ++i) intervals[i] = times[i + 1] - times[i];
-  const auto middle = intervals.begin() + signed_index(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  return *middle;
+  return upper_median(intervals);
 }
 
 void check(const Channel& channel, const std::string& source) {

@@ -1,5 +1,7 @@
 #include "veridyn/core/text.hpp"
 
+#include <fmt/format.h>
+
 namespace veridyn {
 
 std::string_view trimmed(std::string_view text) {
@@ -36,6 +38,21 @@ std::string shown(std::string_view text) {
     if (c < 0x20 || c > 0x7e) c = '?';
   }
   return text.size() > 40 ? result + "..." : result;
+}
+
+std::string toml_text(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += c;
+    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
+      out += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
+    } else {
+      out += c;
+    }
+  }
+  return out + '"';
 }
 
 }  // namespace veridyn

@@ -19,4 +19,7 @@ namespace veridyn {
 /// Bytes of a file for a message: at most 40, what is not printable as '?'.
 [[nodiscard]] std::string shown(std::string_view text);
 
+/// As a string of TOML, in quotes.
+[[nodiscard]] std::string toml_text(std::string_view text);
+
 }  // namespace veridyn

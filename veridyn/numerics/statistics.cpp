@@ -6,11 +6,13 @@
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <numeric>
 
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
+#include "veridyn/core/rank.hpp"
+#include "veridyn/numerics/moments.hpp"
 
 namespace veridyn::numerics {
 namespace {
@@ -24,10 +26,6 @@ std::vector<double> finite_values(std::span<const double> x) {
     if (std::isfinite(v)) kept.push_back(v);
   }
   return kept;
-}
-
-double mean_of(std::span<const double> x) {
-  return x.empty() ? 0.0 : std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
 }
 
 // Bounds of contiguous equal ids; one segment when there are no ids.
@@ -56,9 +54,9 @@ double lagged_product(const std::vector<double>& x, const std::vector<std::pair<
 }
 
 std::vector<double> centred(std::span<const double> x) {
-  const double mean = mean_of(x);
+  const double middle = mean(x);
   std::vector<double> c(x.begin(), x.end());
-  for (double& v : c) v -= mean;
+  for (double& v : c) v -= middle;
   return c;
 }
 
@@ -94,7 +92,7 @@ NormalPlot normal_probability_plot(std::span<const double> x, std::size_t max_po
   std::sort(sorted.begin(), sorted.end());
   const std::size_t n = sorted.size();
   const auto count = static_cast<double>(n);
-  plot.mean = mean_of(sorted);
+  plot.mean = mean(sorted);
   double sum_ss = 0.0, sum_qq = 0.0, sum_sq = 0.0;
   for (const double v : sorted) sum_ss += (v - plot.mean) * (v - plot.mean);
   plot.sd = n > 1 ? std::sqrt(sum_ss / (count - 1.0)) : 0.0;
@@ -160,13 +158,6 @@ WhitenessTest whiteness_test(std::span<const double> residual, std::size_t lags,
   }
   if (power > 0.0) test.durbin_watson = differences / power;
   return test;
-}
-
-double effective_sample_size_lag1(std::span<const double> x) {
-  if (x.size() < 3) return static_cast<double>(x.size());
-  const double r1 = autocorrelation(x, 1).value[1];
-  const auto count = static_cast<double>(x.size());
-  return std::clamp(count * (1.0 - r1) / (1.0 + r1), 1.0, count);
 }
 
 double effective_sample_size_variance(std::span<const double> x, std::span<const int> segment) {
@@ -235,22 +226,18 @@ double quantile_of_sorted(std::span<const double> sorted, double share) {
 }
 
 double rms(std::span<const double> x) {
-  double squares = 0.0, count = 0.0;
-  for (const double v : x) {
-    if (!std::isfinite(v)) continue;
-    squares += v * v;
-    count += 1.0;
-  }
-  return std::sqrt(squares / std::max(1.0, count));
+  Moments moments;
+  for (const double v : x)
+    if (std::isfinite(v)) moments.add(v);
+  return moments.rms();
 }
 
 double median(std::span<const double> x) {
   std::vector<double> v = finite_values(x);
   if (v.empty()) return kNaN;
-  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::nth_element(v.begin(), middle, v.end());
-  if (v.size() % 2 == 1) return *middle;
-  return 0.5 * (*middle + *std::max_element(v.begin(), middle));
+  const double upper = upper_median(v);
+  if (v.size() % 2 == 1) return upper;
+  return 0.5 * (upper + *std::max_element(v.begin(), v.begin() + signed_index(v.size() / 2)));
 }
 
 double robust_sd(std::span<const double> x) {

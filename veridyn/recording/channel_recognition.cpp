@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/rank.hpp"
 #include "veridyn/core/text.hpp"
 
 namespace veridyn::recording {
@@ -66,10 +67,8 @@ Spread spread_of(const Channel& channel) {
   for (const double v : channel.value)
     if (std::isfinite(v)) values.push_back(v);
   if (values.empty()) return {};
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  return {*low, *middle, *high};
+  const auto [low, high] = std::ranges::minmax(values);
+  return {low, upper_median(values), high};
 }
 
 /// A unit and how it is known; "?" with what it may be.
@@ -145,15 +144,6 @@ void share_unit_of_gravity(std::vector<RecognisedChannel>& found) {
     one.unit = unit;
     one.why = fmt::format("as {}, of which the median is gravity", vertical->source);
   }
-}
-
-std::string toml_text(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c == '\n' ? "\\n" : c == '\t' ? "\\t" : std::string(1, c);
-  }
-  return out + '"';
 }
 
 /// A name in a comment, which ends with its line.

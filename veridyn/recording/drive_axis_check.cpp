@@ -10,6 +10,8 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/core/rank.hpp"
+#include "veridyn/core/text.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::recording {
@@ -224,7 +226,7 @@ std::string name_of(InertialChannel s, std::span<const ChannelOrigin> origins) {
 }
 
 std::string line(InertialChannel s, const std::string& source, double scale, std::span<const ChannelOrigin> origins) {
-  return fmt::format("{} = {{ channel = \"{}\", scale = {:.6g} }}", name_of(s, origins), source, scale);
+  return fmt::format("{} = {{ channel = {}, scale = {:.6g} }}", name_of(s, origins), toml_text(source), scale);
 }
 
 constexpr std::array kAccelAxes = {kAccelX, kAccelY, kAccelZ};
@@ -268,10 +270,7 @@ Exchange exchanged(const DriveMotion& m, const Values& speed_change, const Value
 
 double median_of(Values values) {
   std::erase_if(values, [](double v) { return !std::isfinite(v); });
-  if (values.empty()) return kNaN;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return values.empty() ? kNaN : upper_median(values);
 }
 
 std::vector<Compared> compare(const DriveMotion& m) {
@@ -384,7 +383,7 @@ std::optional<DriveFault> steering_fault(const DriveMotion& m, const Compared& c
                .lines = {}};
   const std::string source = source_of(kSteer, origins);
   if (hand_wheel) {
-    f.lines = {"steer = \"none\"", fmt::format("steering_wheel = \"{}\"", source)};
+    f.lines = {"steer = \"none\"", fmt::format("steering_wheel = {}", toml_text(source))};
   } else {
     f.lines = {line(kSteer, source, kDegree, origins)};
   }

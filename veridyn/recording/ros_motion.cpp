@@ -32,11 +32,6 @@ bool is_command(const RosTopic& topic) {
   return contains_any(topic.name, {"cmd", "command", "setpoint", "target", "desired", "reference"});
 }
 
-double median_of_finite(std::vector<double> values) {
-  std::erase_if(values, [](double v) { return !std::isfinite(v); });
-  return values.empty() ? kNaN : numerics::median(values);
-}
-
 class MotionFinder {
  public:
   explicit MotionFinder(const Recording& log) : topics_(log) {}
@@ -136,7 +131,7 @@ class MotionFinder {
     const RosTopic& topic = found.front();
     const Eigen::Matrix3d R = rotation(topic.frame, topic.name);
     std::optional<RosVector> force = vector(topic, ".linear_acceleration", R);
-    const double up = force ? median_of_finite(force->value[2]) : kNaN;
+    const double up = force ? numerics::median(force->value[2]) : kNaN;
     if (!(std::abs(up - kGravity) < 0.4 * kGravity)) {
       if (force)
         motion_.notes.push_back(

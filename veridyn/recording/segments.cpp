@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/rank.hpp"
 
 namespace veridyn::recording {
 namespace {
@@ -132,9 +133,7 @@ double quantile_inside(std::span<const double> x, const std::vector<bool>& insid
     if (inside[i] && std::isfinite(x[i])) values.push_back(x[i]);
   }
   if (values.empty()) return 0.0;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+  return value_of_rank(values, static_cast<std::size_t>(share * static_cast<double>(values.size() - 1)));
 }
 
 double LeastActivity::of(std::span<const double> activity, const std::vector<bool>& inside) const {

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/numerics/moments.hpp"
 #include "veridyn/report/document/number_format.hpp"
 #include "veridyn/report/parts/analysis_sections.hpp"
 #include "veridyn/report/parts/estimate_tables.hpp"
@@ -43,10 +43,8 @@ std::vector<Fact> task_facts(const TaskStudy& study, const MuscleAnalysis& a) {
            fmt::format("{:.3g} {}{}", a.moment_noise(j), a.outputs[j].unit,
                        study.outputs[j].noise_sd > 0.0 ? " (stated)" : " (found together with the EMG's error)")});
     if (!a.emg_share.empty())
-      list.push_back(
-          {"Error of the EMG", fmt::format("{:.0f} % of the residual's variance",
-                                           100.0 * std::accumulate(a.emg_share.begin(), a.emg_share.end(), 0.0) /
-                                               static_cast<double>(a.emg_share.size()))});
+      list.push_back({"Error of the EMG",
+                      fmt::format("{:.0f} % of the residual's variance", 100.0 * numerics::mean(a.emg_share))});
   }
   if (!a.result.searches.empty()) list.push_back({"Method", a.estimate.method});
   return list;

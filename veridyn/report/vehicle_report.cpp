@@ -40,9 +40,9 @@ std::vector<Fact> facts(const SimulationStudy& study, const SimulationRun& run) 
 Verdict verdict(const SimulationStudy& study, const SimulationRun& run) {
   const VehicleTrajectory& t = run.trajectory;
   Verdict v;
-  const bool clean = t.end == SimulationEnd::kCompleted && t.lift_offs.empty();
-  v.level = clean ? Level::kGood : t.end == SimulationEnd::kDiverged ? Level::kBad : Level::kCaution;
-  v.word = t.end == SimulationEnd::kCompleted ? "Driven" : "Ended early";
+  const bool clean = t.end == vehicle::DriveEnd::kCompleted && t.lift_offs.empty();
+  v.level = clean ? Level::kGood : t.end == vehicle::DriveEnd::kDiverged ? Level::kBad : Level::kCaution;
+  v.word = t.end == vehicle::DriveEnd::kCompleted ? "Driven" : "Ended early";
   std::string headline = t.message();
   headline[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(headline[0])));
   v.headline = headline + ".";

@@ -129,7 +129,7 @@ class ChangedDrives {
   explicit ChangedDrives(const DriveSensitivityStudy& study) : study_(study) {
     const SimulationStudy& drive = study.drive;
     const VehicleTrajectory nominal = run(drive.vehicle);
-    if (nominal.end != SimulationEnd::kCompleted)
+    if (nominal.end != DriveEnd::kCompleted)
       throw std::runtime_error(fmt::format("the nominal drive ends early: {}", nominal.message()));
     for (const Metric& m : metrics_of(nominal, drive.vehicle.parameters)) {
       // The same as the one before in another unit.
@@ -156,7 +156,7 @@ class ChangedDrives {
     const VehicleParameters<double> p = parameters_at(study_.drive.vehicle.parameters, study_.inputs, point);
     try {
       const VehicleTrajectory t = run(with_parameters(study_.drive.vehicle, p));
-      if (t.end != SimulationEnd::kCompleted || t.size() != nominal_.front().value.size()) return false;
+      if (t.end != DriveEnd::kCompleted || t.size() != nominal_.front().value.size()) return false;
       const std::vector<Metric> metrics = metrics_of(t, p);
       for (std::size_t k = 0; k < metrics_; ++k) values[k] = value_of(metrics, responses_[k].name);
       const std::vector<ComparedSignal> signals = signals_of(t, study_.drive);
@@ -177,7 +177,7 @@ class ChangedDrives {
     std::unique_ptr<Driver> driver = borrow();
     VehicleTrajectory t = simulate(vehicle, drive.model, drive.four_wheel, *driver, drive.road.get(), drive.simulation,
                                    silent, drive.grip);
-    if (t.end == SimulationEnd::kCompleted) give_back(std::move(driver));
+    if (t.end == DriveEnd::kCompleted) give_back(std::move(driver));
     return t;
   }
   [[nodiscard]] std::unique_ptr<Driver> borrow() {

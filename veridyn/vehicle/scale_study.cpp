@@ -127,9 +127,9 @@ const SimilarityReport& ScaleAnalysis::judged() const { return given_report ? *g
 
 std::vector<std::string> ScaleAnalysis::ended_early() const {
   std::vector<std::string> texts;
-  if (prototype.end != SimulationEnd::kCompleted) texts.push_back("prototype: " + prototype.message());
+  if (prototype.end != DriveEnd::kCompleted) texts.push_back("prototype: " + prototype.message());
   for (const ScaledRun& run : runs) {
-    if (run.trajectory.end != SimulationEnd::kCompleted) texts.push_back(run.name + ": " + run.trajectory.message());
+    if (run.trajectory.end != DriveEnd::kCompleted) texts.push_back(run.name + ": " + run.trajectory.message());
   }
   return texts;
 }
@@ -146,16 +146,16 @@ ScaleAnalysis run_scale_study(const ScaleStudy& study, Progress& progress) {
   const double gravity = study.simulation.four_wheel.gravity;
   analysis.prototype = simulate_scaled(study.simulation, study.simulation.vehicle, {}, gravity, progress);
   const auto add = [&](const std::string& name, const Vehicle& vehicle, const ScaleFactors& f, double g) {
-    if (analysis.prototype.end == SimulationEnd::kInterrupted) return;
+    if (analysis.prototype.end == DriveEnd::kInterrupted) return;
     ScaledRun run;
     run.name = name;
     run.trajectory = simulate_scaled(study.simulation, vehicle, f, g, progress);
     run.rescaled = scaled(run.trajectory, f.inverse());
     run.differences = motion_differences(analysis.prototype, run.rescaled);
-    analysis.interrupted = analysis.interrupted || run.trajectory.end == SimulationEnd::kInterrupted;
+    analysis.interrupted = analysis.interrupted || run.trajectory.end == DriveEnd::kInterrupted;
     analysis.runs.push_back(std::move(run));
   };
-  analysis.interrupted = analysis.prototype.end == SimulationEnd::kInterrupted;
+  analysis.interrupted = analysis.prototype.end == DriveEnd::kInterrupted;
   const bool other_gravity = std::abs(analysis.scaled.similar_gravity / gravity - 1.0) > 1e-9;
   if (other_gravity) {
     add(fmt::format("exact twin, gravity {:.4g} m/s^2", analysis.scaled.similar_gravity), analysis.twin, factors,

@@ -188,7 +188,7 @@ TEST(Simulation, SwitchingASensorOffLeavesTheOthersUnchanged) {
 TEST(Simulation, EndsWithAReportWhenTheFlightFails) {
   SimulationOptions slow = calm("unatrap", 10);
   slow.airspeed = 6;
-  EXPECT_EQ(fly(slow).end, SimulationEnd::kNoTrim);
+  EXPECT_EQ(fly(slow).end, FlightEnd::kNoTrim);
 
   SimulationOptions low = calm("unatrap", 60);
   low.altitude = 12;
@@ -198,14 +198,14 @@ TEST(Simulation, EndsWithAReportWhenTheFlightFails) {
                                            .amplitude = {-0.3},
                                            .pulse = 20}};
   const SimulatedFlight ground = fly(low);
-  EXPECT_EQ(ground.end, SimulationEnd::kGround) << ground.message();
+  EXPECT_EQ(ground.end, FlightEnd::kGround) << ground.message();
   EXPECT_GT(ground.truth.at("alpha").size(), 100u);
 
   SimulationOptions stiff = calm("tut_airplane", 60);
   stiff.step = 0.02;
   stiff.subject.inertia = Inertia{1e-4, 1e-4, 1e-4, 0};
   const SimulatedFlight broken = fly(stiff);
-  EXPECT_TRUE(broken.end == SimulationEnd::kDiverged || broken.end == SimulationEnd::kUpset) << broken.message();
+  EXPECT_TRUE(broken.end == FlightEnd::kDiverged || broken.end == FlightEnd::kUpset) << broken.message();
 }
 
 /// Asks to stop at its n-th update.
@@ -226,7 +226,7 @@ TEST(Simulation, EndsSoonWhenItIsInterrupted) {
     const auto begin = std::chrono::steady_clock::now();
     const SimulatedFlight flight = simulate(o, progress);
     EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 5.0);
-    EXPECT_EQ(flight.end, SimulationEnd::kInterrupted);
+    EXPECT_EQ(flight.end, FlightEnd::kInterrupted);
     EXPECT_FALSE(flight.usable());
     EXPECT_LT(flight.end_time, 20.0);
     EXPECT_EQ(flight.message(), fmt::format("interrupted at {:.1f} s", flight.end_time));

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/refusal.hpp"
+#include "veridyn/core/bytes.hpp"
 #include "veridyn/core/constants.hpp"
-#include "veridyn/live/link/bytes.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::live {

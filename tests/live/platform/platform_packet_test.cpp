@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "veridyn/core/bytes.hpp"
 #include "veridyn/io/packets/crc32.hpp"
-#include "veridyn/live/link/bytes.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::live {

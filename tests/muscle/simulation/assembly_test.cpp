@@ -80,7 +80,7 @@ TEST(Assembly, LoopsThatCannotCloseAreNamed) {
 TEST(Loops, AFourBarLinkageKeepsItsEnergyAndStaysClosed) {
   const MusculoskeletalSystem system(test::four_bar());
   const MuscleTrajectory t = simulated(system, started_at(system, Eigen::Vector3d(1.2, 0.4, 0.6)), 10.0, 1e-8);
-  ASSERT_EQ(t.end, SimulationEnd::kCompleted);
+  ASSERT_EQ(t.end, MotionEnd::kCompleted);
   const double first = energy_at(system, t.q.row(0).transpose(), t.qdot.row(0).transpose());
   double worst = 0.0, open = 0.0, fastest = 0.0;
   for (Eigen::Index i = 0; i < t.q.rows(); ++i) {
@@ -124,7 +124,7 @@ TEST(Loops, AMassAtADistanceIsAPendulum) {
   const double period = 4.0 * std::sqrt(length / g) * std::comp_ellint_1(std::sin(0.5 * amplitude));
   const Eigen::Vector3d q0(0.0, length * std::sin(amplitude), -length * std::cos(amplitude));
   const MuscleTrajectory t = simulated(system, started_at(system, q0), period, 1e-9);
-  ASSERT_EQ(t.end, SimulationEnd::kCompleted);
+  ASSERT_EQ(t.end, MotionEnd::kCompleted);
   EXPECT_NEAR(t.final_state(0), q0(1), 1e-7);
   EXPECT_NEAR(t.final_state(1), q0(2), 1e-7);
   for (Eigen::Index i = 0; i < t.q.rows(); ++i) EXPECT_NEAR(std::hypot(t.q(i, 1), t.q(i, 2)), length, 1e-8);
@@ -151,7 +151,7 @@ TEST(Loops, AWeldConstraintIsALockedJoint) {
   const MuscleTrajectory b = simulated(two, started_at(two, Eigen::Vector2d(1.5, 0.7)), 2.0, 1e-9);
   // Assembly changed both angles of the second; start from where it began.
   const MuscleTrajectory c = simulated(two, started_at(two, Eigen::Vector2d(1.5, 0.4)), 2.0, 1e-9);
-  ASSERT_EQ(b.end, SimulationEnd::kCompleted);
+  ASSERT_EQ(b.end, MotionEnd::kCompleted);
   EXPECT_NEAR(b.q(0, 1), 0.4, 1e-12);
   ASSERT_EQ(a.q.rows(), c.q.rows());
   EXPECT_LT((a.q - c.q).cwiseAbs().maxCoeff(), 1e-6);
@@ -167,7 +167,7 @@ TEST(Loops, APointOnALineIsASlider) {
                     .frame_1 = {.rotation = body_fixed_xyz({0.0, 0.0, 0.5 * std::numbers::pi})}};
   const MusculoskeletalSystem system(model);
   const MuscleTrajectory t = simulated(system, started_at(system, Eigen::Vector3d(0.0, 0.3, 2.0)), 0.5, 1e-9);
-  ASSERT_EQ(t.end, SimulationEnd::kCompleted);
+  ASSERT_EQ(t.end, MotionEnd::kCompleted);
   EXPECT_NEAR(t.q(0, 1), 0.0, 1e-12) << "assembled on the line";
   EXPECT_NEAR(t.final_state(0), 0.0, 1e-10);
   EXPECT_NEAR(t.final_state(1), 2.0 + 0.5 * model.gravity.y() * 0.25, 1e-9);

@@ -180,7 +180,7 @@ TEST_F(BuiltInArm, ADivergingSimulationEndsAndSaysWhichStateAndWhen) {
 
 TEST_F(BuiltInArm, AStepLimitEndsTheRun) {
   const MuscleTrajectory t = simulate_forward(system, start, constant_drive(6, 0.1), {.max_steps = 10}, progress);
-  EXPECT_EQ(t.end, SimulationEnd::kStepLimit);
+  EXPECT_EQ(t.end, MotionEnd::kStepLimit);
   EXPECT_THAT(t.message(), HasSubstr("limit of"));
 }
 
@@ -192,7 +192,7 @@ TEST(ForwardSimulation, ACoupledCoordinateMayStartOutsideItsRange) {
   Progress progress;
   const MuscleTrajectory t =
       simulate_forward(system, default_start(system.model()), constant_drive(6, 0.1), {.end = 0.02}, progress);
-  EXPECT_EQ(t.end, SimulationEnd::kCompleted);
+  EXPECT_EQ(t.end, MotionEnd::kCompleted);
 }
 
 TEST_F(BuiltInArm, StartsOutsideTheRangeOrNotFiniteAreRefusedByName) {

@@ -30,7 +30,7 @@ TEST(PassiveForces, AMassOnAPathSpringSwingsAsItsEquationSays) {
                                   "<resting_length>0.3</resting_length><stiffness>200</stiffness></PathSpring>");
   const double y0 = 1.0 - 0.3 - 2.0 * 10.0 / 200.0, omega = 10.0;
   const MuscleTrajectory t = released(model, y0 - 0.05, 1.0);
-  ASSERT_EQ(t.end, SimulationEnd::kCompleted);
+  ASSERT_EQ(t.end, MotionEnd::kCompleted);
   for (std::size_t i = 0; i < t.time.size(); ++i)
     EXPECT_NEAR(t.q(i, 0), y0 - 0.05 * std::cos(omega * t.time[i]), 1e-7) << t.time[i];
 }
@@ -41,7 +41,7 @@ TEST(PassiveForces, AFormulaOnACoordinateSwingsAMassAsItsEquationSays) {
       "<ExpressionBasedCoordinateForce name=\"f\"><coordinate>height</coordinate><expression>-200*q</expression>"
       "</ExpressionBasedCoordinateForce>");
   const MuscleTrajectory t = released(model, 0.05, 1.0);
-  ASSERT_EQ(t.end, SimulationEnd::kCompleted);
+  ASSERT_EQ(t.end, MotionEnd::kCompleted);
   for (std::size_t i = 0; i < t.time.size(); ++i)
     EXPECT_NEAR(t.q(i, 0), -0.1 + 0.15 * std::cos(10.0 * t.time[i]), 1e-7) << t.time[i];
 }
@@ -53,7 +53,7 @@ TEST(PassiveForces, ALigamentHoldsAMassWhereItsCurveCarriesTheWeight) {
                   "<resting_length>0.4</resting_length><pcsa_force>40</pcsa_force><PiecewiseLinearFunction "
                   "name=\"force_length_curve\"><x>0 1 2</x><y>0 1 2</y></PiecewiseLinearFunction></Ligament>");
   const MuscleTrajectory t = released(model, 0.4, 0.5);
-  ASSERT_EQ(t.end, SimulationEnd::kCompleted);
+  ASSERT_EQ(t.end, MotionEnd::kCompleted);
   EXPECT_NEAR(t.q(t.q.rows() - 1, 0), 0.4, 1e-9);
   // Slack it does nothing: free fall.
   const MuscleTrajectory fall = released(model, 0.7, 0.1);
@@ -62,7 +62,7 @@ TEST(PassiveForces, ALigamentHoldsAMassWhereItsCurveCarriesTheWeight) {
 
 TEST(PassiveForces, ABallBouncesToItsHeightAndWithDissipationComesToRest) {
   const MuscleTrajectory bounce = released(on_a_slider(ball_on_floor("0")), 0.2, 2.0);
-  ASSERT_EQ(bounce.end, SimulationEnd::kCompleted);
+  ASSERT_EQ(bounce.end, MotionEnd::kCompleted);
   const double k = kBallStiffness;
   double lowest = 1.0;
   for (Eigen::Index i = 0; i < bounce.q.rows(); ++i) {
@@ -74,7 +74,7 @@ TEST(PassiveForces, ABallBouncesToItsHeightAndWithDissipationComesToRest) {
   }
   EXPECT_LT(lowest, 0.1);
   const MuscleTrajectory rest = released(on_a_slider(ball_on_floor("20")), 0.12, 4.0);
-  ASSERT_EQ(rest.end, SimulationEnd::kCompleted);
+  ASSERT_EQ(rest.end, MotionEnd::kCompleted);
   EXPECT_NEAR(rest.q(rest.q.rows() - 1, 0), 0.1 - std::pow(20.0 / k, 2.0 / 3.0), 1e-4);
 }
 

@@ -48,7 +48,7 @@ TEST(DriverModel, FollowsACircleWithoutErrorWhereItsModelIsPerfect) {
   const auto car = linear_car();
   PreviewDriver driver(linearise(car, 15.0), path);
   const VehicleTrajectory t = drive(car, driver, 15.0, 60.0);
-  ASSERT_EQ(t.end, SimulationEnd::kCompleted);
+  ASSERT_EQ(t.end, DriveEnd::kCompleted);
   // What is left comes from the sideslip angle squared: the way goes on with sqrt(u^2 + v^2), the driver counts on u.
   EXPECT_LT(final_error(t, *path), 1e-4);
   EXPECT_NEAR(t.r.back(), 15.0 / 60.0, 1e-3);
@@ -150,7 +150,7 @@ TEST(DriverModel, MeasuresTheUndersteerGradientOnACircle) {
                                                        {.longitudinal = LongitudinalParameters{}});
   Progress silent;
   const VehicleTrajectory t = simulate(car, *m.driver, nullptr, {.duration = 60.0, .speed = 10.0}, silent);
-  ASSERT_EQ(t.end, SimulationEnd::kCompleted) << t.message();
+  ASSERT_EQ(t.end, DriveEnd::kCompleted) << t.message();
   EXPECT_NEAR(t.u.back(), 18.0, 0.3);
   const std::vector<Metric> list = manoeuvre_metrics(t, m, p);
   const double expected =

@@ -242,7 +242,7 @@ TEST(FourWheelModel, CoastsDownInDragWhateverLiftsIt) {
   const LinearTyre<double> stiff{.stiffness = 60000.0, .slip_stiffness = 3e6};  // hardly slips
   const LinearCar<double> car(p, {stiff, stiff, stiff, stiff}, options);
   const auto out = drive(car, testing::hands_off, {.duration = 30.0, .speed = 50.0});
-  ASSERT_EQ(out.end, SimulationEnd::kCompleted) << out.message();
+  ASSERT_EQ(out.end, DriveEnd::kCompleted) << out.message();
   const double B = 0.5 * l.air_density * l.drag_area;
   const double mass = p.mass + 4.0 * l.wheel_inertia / (l.wheel_radius * l.wheel_radius);
   for (const std::size_t k : {std::size_t{1000}, out.size() - 1})

@@ -13,14 +13,14 @@ TEST(VehicleTrajectory, SaysHowItEndedAndWhenBeforeTheEnd) {
   VehicleTrajectory t;
   t.end_time = 12.5;
   EXPECT_EQ(t.message(), "driven to the end");
-  t.end = SimulationEnd::kSpun;
+  t.end = DriveEnd::kSpun;
   EXPECT_EQ(t.message(), "the vehicle spun: it goes backwards (at 12.500 s)");
 }
 
 TEST(VehicleTrajectory, HasAnotherWordForEveryEndOfADrive) {
   std::set<std::string_view> words;
-  for (const SimulationEnd end : {SimulationEnd::kCompleted, SimulationEnd::kStopped, SimulationEnd::kSpun,
-                                  SimulationEnd::kRolledOver, SimulationEnd::kInterrupted, SimulationEnd::kDiverged}) {
+  for (const DriveEnd end : {DriveEnd::kCompleted, DriveEnd::kStopped, DriveEnd::kSpun, DriveEnd::kRolledOver,
+                             DriveEnd::kInterrupted, DriveEnd::kDiverged}) {
     EXPECT_FALSE(to_string(end).empty());
     words.insert(to_string(end));
   }
@@ -39,11 +39,11 @@ TEST(VehicleTrajectory, NamesWheelsThatLeftTheGroundEightAtMost) {
 
 TEST(VehicleTrajectory, IsUsableUnlessInterruptedOrDiverged) {
   VehicleTrajectory t;
-  for (const auto& [end, usable] : {std::pair{SimulationEnd::kCompleted, true},
-                                    {SimulationEnd::kStopped, true},
-                                    {SimulationEnd::kRolledOver, true},
-                                    {SimulationEnd::kInterrupted, false},
-                                    {SimulationEnd::kDiverged, false}}) {
+  for (const auto& [end, usable] : {std::pair{DriveEnd::kCompleted, true},
+                                    {DriveEnd::kStopped, true},
+                                    {DriveEnd::kRolledOver, true},
+                                    {DriveEnd::kInterrupted, false},
+                                    {DriveEnd::kDiverged, false}}) {
     t.end = end;
     EXPECT_EQ(t.usable(), usable) << to_string(end);
   }

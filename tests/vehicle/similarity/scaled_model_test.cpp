@@ -35,7 +35,7 @@ double largest_difference(const FourWheelModel<double, Tyre>& prototype, const F
   ScaledDriver driver(*m.driver, factors);
   const VehicleTrajectory back =
       scaled(simulate(twin, driver, nullptr, options_of(speed, factors), silent), factors.inverse());
-  EXPECT_EQ(full.end, SimulationEnd::kCompleted);
+  EXPECT_EQ(full.end, DriveEnd::kCompleted);
   EXPECT_EQ(full.size(), back.size());
   double worst = 0.0;
   const auto see = [&](const std::vector<double>& a, const std::vector<double>& b) {

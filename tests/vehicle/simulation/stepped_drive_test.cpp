@@ -49,7 +49,7 @@ void expect_same_as_simulate(const LinearCar<double>& car, double speed) {
   Progress silent;
   const auto whole =
       simulate(car, driver, road.get(), {.duration = 5.0, .output_step = kDriveStep, .speed = speed}, silent);
-  ASSERT_EQ(whole.end, SimulationEnd::kCompleted) << whole.message();
+  ASSERT_EQ(whole.end, DriveEnd::kCompleted) << whole.message();
   Drive drive(car, road, speed), at_sample(car, road, speed);
   drive.reset(speed);
   const Eigen::Vector3d head(0.2, 0.4, 0.7);

@@ -40,7 +40,7 @@ TEST(VehicleSimulation, DoesNotAllocateInItsLoop) {
     const SimulationOptions options{.duration = duration, .output_step = duration / 10.0};
     const long before = allocations;
     const VehicleTrajectory out = run(options);
-    EXPECT_EQ(out.end, SimulationEnd::kCompleted) << out.message();
+    EXPECT_EQ(out.end, DriveEnd::kCompleted) << out.message();
     return allocations - before;
   };
   const auto check = [&](const auto& run) { EXPECT_EQ(allocated(run, 1.0), allocated(run, 4.0)); };

@@ -29,7 +29,7 @@ TEST(FourWheelSimulation, StopsInTheDistanceThatFrictionLeaves) {
   const auto car = linear_car(p, with_longitudinal({.drag_area = 0.0, .rolling_resistance = 0.0}));
   const auto out =
       drive(car, [](double) { return Controls{.brake_torque = 20000.0}; }, {.duration = 10.0, .speed = 25.0});
-  ASSERT_EQ(out.end, SimulationEnd::kStopped) << out.message();
+  ASSERT_EQ(out.end, DriveEnd::kStopped) << out.message();
   const double left = out.u.back();  // at or just below 0.5 m/s
   EXPECT_LE(left, 0.5);
   // The wheels take some hundredths of a second to lock: until then they brake less.
@@ -46,7 +46,7 @@ TEST(FourWheelSimulation, BrakesWithMoreLoadInFrontByHeightOverWheelbase) {
   const auto car = linear_car(p, with_longitudinal({.drag_area = 0.0, .rolling_resistance = 0.0}));
   const auto out = drive(car, [](double t) { return Controls{.brake_torque = 1000.0 * std::min(1.0, t)}; },
                          {.duration = 4.0, .speed = 40.0});
-  ASSERT_EQ(out.end, SimulationEnd::kCompleted);
+  ASSERT_EQ(out.end, DriveEnd::kCompleted);
   const double a_x = out.longitudinal_acceleration.back();
   // The spinning wheels are slowed too: m a R = -T + 4 I_w a/R, but for the slip.
   EXPECT_NEAR(a_x * (p.mass * 0.3 + 4.0 * 1.0 / 0.3), -1000.0, 3.0);
@@ -63,7 +63,7 @@ TEST(FourWheelSimulation, CoastsDownAsTheClosedFormSays) {
   LinearTyre<double> stiff{.stiffness = 60000.0, .slip_stiffness = 3e6};  // hardly slips
   const LinearCar<double> car(p, {stiff, stiff, stiff, stiff}, with_longitudinal(l));
   const auto out = drive(car, hands_off, {.duration = 30.0, .speed = 40.0});
-  ASSERT_EQ(out.end, SimulationEnd::kCompleted);
+  ASSERT_EQ(out.end, DriveEnd::kCompleted);
   const double A = l.rolling_resistance * p.mass * kGravity, B = 0.5 * l.air_density * l.drag_area;
   const double mass = p.mass + 4.0 * l.wheel_inertia / (l.wheel_radius * l.wheel_radius);
   const double phase = std::atan(40.0 * std::sqrt(B / A)) - std::sqrt(A * B) / mass * 30.0;
@@ -99,7 +99,7 @@ TEST(FourWheelSimulation, FollowsTheWheelsSpinAtAnySpeed) {
     const auto controls = [](double t) { return Controls{.steer = 0.02 * std::sin(t), .drive_torque = 600.0 * t}; };
     const auto run = [&](double h) {
       const auto out = drive(car, controls, {.duration = 1.2, .step = h, .output_step = 1.2, .speed = speed});
-      EXPECT_EQ(out.end, SimulationEnd::kCompleted);
+      EXPECT_EQ(out.end, DriveEnd::kCompleted);
       return out;
     };
     const auto one = run(step), exact = run(6.25e-5);
@@ -115,7 +115,7 @@ TEST(FourWheelSimulation, FollowsTheWheelsSpinAtAnySpeed) {
 TEST(FourWheelSimulation, EndsWhereTheVehicleStopsOrSpins) {
   const auto coasting = drive(linear_car(car_with_bars(), with_longitudinal({})),
                               [](double) { return Controls{.brake_torque = 200.0}; }, {.duration = 60.0, .speed = 2.0});
-  EXPECT_EQ(coasting.end, SimulationEnd::kStopped);
+  EXPECT_EQ(coasting.end, DriveEnd::kStopped);
   EXPECT_LT(coasting.end_time, 60.0);
   EXPECT_EQ(coasting.time.back(), coasting.end_time);
   EXPECT_NE(coasting.message().find("came to a stop"), std::string::npos);
@@ -126,7 +126,7 @@ TEST(FourWheelSimulation, EndsWhereTheVehicleStopsOrSpins) {
       drive(linear_car(loose, with_longitudinal({})),
             [](double t) { return Controls{.steer = 0.1 * std::min(1.0, t), .drive_torque = 2000.0}; },
             {.duration = 60.0, .speed = 30.0});
-  EXPECT_EQ(spinning.end, SimulationEnd::kSpun) << spinning.message();
+  EXPECT_EQ(spinning.end, DriveEnd::kSpun) << spinning.message();
   EXPECT_TRUE(spinning.usable());
 }
 

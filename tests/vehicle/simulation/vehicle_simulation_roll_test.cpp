@@ -45,7 +45,7 @@ TEST(FourWheelSimulation, FallsIntoAHoleAndLandsAgain) {
     return in ? -0.3 : 0.0;
   });
   const auto out = drive(linear_car(car_with_bars()), hands_off, {.duration = 6.0, .output_step = 1e-3}, &hole);
-  EXPECT_EQ(out.end, SimulationEnd::kCompleted);
+  EXPECT_EQ(out.end, DriveEnd::kCompleted);
   ASSERT_FALSE(out.lift_offs.empty());
   // Front left over the edge after (20 - a)/u, rear left b behind.
   const auto first = [&](std::size_t wheel) {
@@ -97,11 +97,11 @@ TEST(FourWheelSimulation, LiftsItsInnerWheelsAtHalfTheTrackOverTheHeight) {
     return drive(linear_car(p, options), controls, {.duration = 6.0, .step = 1e-4, .speed = u});
   };
   const auto below = run(0.97);
-  EXPECT_EQ(below.end, SimulationEnd::kCompleted) << below.message();
+  EXPECT_EQ(below.end, DriveEnd::kCompleted) << below.message();
   EXPECT_TRUE(below.lift_offs.empty()) << below.message();
   EXPECT_NEAR(below.lateral_acceleration.back() / kGravity / threshold, 0.97, 0.01);
   const auto above = run(1.03);
-  EXPECT_EQ(above.end, SimulationEnd::kRolledOver) << above.message();
+  EXPECT_EQ(above.end, DriveEnd::kRolledOver) << above.message();
   ASSERT_GE(above.lift_offs.size(), 2U);
   for (const LiftOff& l : above.lift_offs) EXPECT_TRUE(is_left(l.wheel));
   EXPECT_NE(above.message().find("the vehicle rolls or pitches beyond 45 deg"), std::string::npos);
@@ -113,7 +113,7 @@ TEST(FourWheelSimulation, LiftsTwoWheelsInAHardTurnAndSetsThemDownAgain) {
   p.I_x = 400.0;
   const auto controls = [](double t) { return Controls{.steer = t > 1.0 && t < 1.5 ? 0.065 : 0.0}; };
   const auto out = drive(linear_car(p), controls, {.duration = 6.0, .output_step = 1e-3});
-  EXPECT_EQ(out.end, SimulationEnd::kCompleted) << out.message();
+  EXPECT_EQ(out.end, DriveEnd::kCompleted) << out.message();
   bool two = false;
   for (std::size_t k = 0; k < out.size(); ++k) {
     two |= out.Fz[kFrontLeft][k] == 0.0 && out.Fz[kRearLeft][k] == 0.0;

@@ -36,7 +36,7 @@ TEST(BicycleSimulation, DrivesTheReferenceManoeuvreToThePrintedDigits) {
   Progress silent;
   const VehicleTrajectory out = simulate(model, driver, {}, silent);
   ASSERT_EQ(out.size(), 2001U);
-  EXPECT_EQ(out.end, SimulationEnd::kCompleted);
+  EXPECT_EQ(out.end, DriveEnd::kCompleted);
   EXPECT_NEAR(out.time[1000], 10.0, 1e-12);
   EXPECT_NEAR(out.r[1000] / kDegree, 34.9515, 5e-5);
   EXPECT_NEAR(out.v[1000], -0.01130, 5e-6);
@@ -63,7 +63,7 @@ TEST(FourWheelSimulation, DrivesLikeTheBicycleInSecondOrderOfTrackAndHeight) {
     p.K_sf = p.K_sr = p.K_tf = p.K_tr = p.K_bf = p.K_br = 200000.0;
     p.I_x = 590.0 * track * track;  // as the roll stiffness
     auto out = simulate(linear_car(p), driver, nullptr, options, silent);
-    EXPECT_EQ(out.end, SimulationEnd::kCompleted);
+    EXPECT_EQ(out.end, DriveEnd::kCompleted);
     return out.r;
   };
   const VehicleParameters<double> p;
@@ -128,7 +128,7 @@ TEST(FourWheelSimulation, MirrorsWithTheTyresOfAFile) {
   const Car even(car_with_bars(), {left, right, left, right}, options),
       uneven(car_with_bars(), {left, left, left, left}, options);
   const auto a = run(even, 1.0), b = run(even, -1.0), c = run(uneven, 1.0), d = run(uneven, -1.0);
-  ASSERT_EQ(a.end, SimulationEnd::kCompleted) << a.message();
+  ASSERT_EQ(a.end, DriveEnd::kCompleted) << a.message();
   EXPECT_GT(std::abs(a.y.back()), 0.5);
   for (std::size_t k = 0; k < a.size(); ++k) {
     EXPECT_EQ(a.y[k], -b.y[k]);
@@ -175,7 +175,7 @@ TEST(FourWheelSimulation, StopsWhenInterruptedAndKeepsWhatItHas) {
   testing::InterruptingProgress impatient(3);
   SignalDriver driver(hands_off);
   const auto out = simulate(linear_car(car_with_bars()), driver, nullptr, {}, impatient);
-  EXPECT_EQ(out.end, SimulationEnd::kInterrupted);
+  EXPECT_EQ(out.end, DriveEnd::kInterrupted);
   EXPECT_EQ(impatient.questions(), 3);
   EXPECT_GT(out.size(), 100U);
   EXPECT_EQ(out.Fz[3].size(), out.size());

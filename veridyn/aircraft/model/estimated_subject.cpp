@@ -9,6 +9,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/io/results/json_text.hpp"
 
 namespace veridyn::aircraft {
 
@@ -109,7 +110,7 @@ std::string to_json(const Subject& s, const estimation::Estimate* estimate) {
     }
     json["coefficients"][std::string(name_of(model->coefficient))] = std::move(terms);
   }
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return io::json_text(json, 2) + "\n";
 }
 
 }  // namespace veridyn::aircraft

@@ -7,6 +7,7 @@
 
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/text.hpp"
 
 namespace veridyn::aircraft {
 
@@ -90,21 +91,6 @@ std::string lengths_toml(const ReferenceLengths& lengths) {
   if (lengths.pitch) given.push_back(fmt::format("pitch = {}", *lengths.pitch));
   if (lengths.yaw) given.push_back(fmt::format("yaw = {}", *lengths.yaw));
   return fmt::format("reference_lengths = {{ {} }}\n", fmt::join(given, ", "));
-}
-
-std::string toml_text(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      out += '\\';
-      out += c;
-    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
-      out += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
-    } else {
-      out += c;
-    }
-  }
-  return out + "\"";
 }
 
 }  // namespace

@@ -1,12 +1,13 @@
 #include "veridyn/aircraft/reconstruction/air_data_check.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "veridyn/aircraft/sensors/air_data_consistency.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/core/rank.hpp"
+#include "veridyn/numerics/moments.hpp"
 
 namespace veridyn::aircraft::internal {
 namespace {
@@ -28,9 +29,8 @@ std::vector<TimeSpan> flying(const FlightStreams& s, std::span<const Segment> se
     for (const Segment& segment : segments) spans.push_back({segment.begin, segment.end});
     return spans;
   }
-  const auto tenth = sorted.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(sorted.size()));
-  std::nth_element(sorted.begin(), tenth, sorted.end());
-  const double least = *tenth * (s.pitot_is_pressure ? 0.25 : 0.5);
+  const double tenth = value_of_rank(sorted, static_cast<std::size_t>(0.9 * static_cast<double>(sorted.size())));
+  const double least = tenth * (s.pitot_is_pressure ? 0.25 : 0.5);
   constexpr double kGap_s = 1.0;
   for (std::size_t i = 0; i < pitot.t.size(); ++i) {
     if (!(pitot.v[i] > least)) continue;
@@ -52,11 +52,7 @@ Channel density_of(const FlightStreams& s, const Recording& recording) {
 }
 
 /// Mean dynamic pressure [Pa].
-double mean_pressure(const FlightStreams& s) {
-  double sum = 0.0;
-  for (const double v : s.sensors[kPitot].v) sum += v;
-  return s.sensors[kPitot].v.empty() ? 0.0 : sum / static_cast<double>(s.sensors[kPitot].v.size());
-}
+double mean_pressure(const FlightStreams& s) { return numerics::mean(s.sensors[kPitot].v); }
 
 /// What the checks say of an error; nothing where they do not determine it.
 std::optional<Found> found_of(int error, const AirDataConsistency& air, const std::optional<VaneSlope>& slope,

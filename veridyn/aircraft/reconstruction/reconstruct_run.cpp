@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/rank.hpp"
 #include "veridyn/numerics/rotation.hpp"
 
 namespace veridyn::aircraft::internal {
@@ -13,9 +14,7 @@ double median_within(const Stream& s, double from, double window) {
   const auto first = std::lower_bound(s.t.begin(), s.t.end(), from);
   const auto last = std::upper_bound(first, s.t.end(), from + window);
   if (first == last) return kNaN;
-  std::vector<double> v(s.v.begin() + (first - s.t.begin()), s.v.begin() + (last - s.t.begin()));
-  std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
-  return v[v.size() / 2];
+  return upper_median(std::vector<double>(s.v.begin() + (first - s.t.begin()), s.v.begin() + (last - s.t.begin())));
 }
 
 namespace {

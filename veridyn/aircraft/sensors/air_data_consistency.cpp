@@ -8,6 +8,7 @@
 #include "veridyn/aircraft/model/still_air_rate.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/core/rank.hpp"
 #include "veridyn/estimation/regression/instrumental_variables.hpp"
 #include "veridyn/numerics/rotation.hpp"
 #include "veridyn/numerics/statistics.hpp"
@@ -179,9 +180,7 @@ std::vector<Vector3> local_wind(const AirDataRows& rows, double scale) {
 
 /// All but the largest thousandth are below it.
 double largest_of(std::vector<double> values) {
-  const auto last = values.begin() + static_cast<std::ptrdiff_t>(0.999 * static_cast<double>(values.size() - 1));
-  std::ranges::nth_element(values, last);
-  return *last;
+  return value_of_rank(values, static_cast<std::size_t>(0.999 * static_cast<double>(values.size() - 1)));
 }
 
 /// Mean of what is finite, with the error of a mean of correlated samples.

@@ -212,11 +212,11 @@ class FlyingAircraft {
 };
 
 /// Whether the flight ends at this moment, and why; kCompleted where it goes on.
-SimulationEnd end_of(const TruthSample& truth, double ground) {
-  if (-truth[Truth::kPosDown] <= ground) return SimulationEnd::kGround;
+FlightEnd end_of(const TruthSample& truth, double ground) {
+  if (-truth[Truth::kPosDown] <= ground) return FlightEnd::kGround;
   const double p = truth[Truth::kGyroX], q = truth[Truth::kGyroY], r = truth[Truth::kGyroZ];
   const bool upset = std::abs(truth[Truth::kAlpha]) > 0.5 * kPi || Vector3d(p, q, r).norm() > 50.0;
-  return upset ? SimulationEnd::kUpset : SimulationEnd::kCompleted;
+  return upset ? FlightEnd::kUpset : FlightEnd::kCompleted;
 }
 
 /// Manoeuvres that began and changes that happened.
@@ -241,26 +241,19 @@ double default_airspeed(const Subject& s, double gravity) {
 std::string SimulatedFlight::message() const {
   const auto at = [this] { return fmt::format("at {:.1f} s", end_time); };
   switch (end) {
-    case SimulationEnd::kCompleted:
+    case FlightEnd::kCompleted:
       return fmt::format("flew {:.0f} s, angle of attack {:.1f} to {:.1f} deg", end_time, alpha_min / kDegree,
                          alpha_max / kDegree);
-    case SimulationEnd::kNoTrim:
+    case FlightEnd::kNoTrim:
       return trim.message();
-    case SimulationEnd::kGround:
+    case FlightEnd::kGround:
       return fmt::format("the aircraft hit the ground {}", at());
-    case SimulationEnd::kUpset:
+    case FlightEnd::kUpset:
       return fmt::format("the aircraft departed from controlled flight {}", at());
-    case SimulationEnd::kDiverged:
+    case FlightEnd::kDiverged:
       return fmt::format("the state is no longer finite {}: the step is too long for this aircraft", at());
-    case SimulationEnd::kInterrupted:
+    case FlightEnd::kInterrupted:
       return fmt::format("interrupted {}", at());
-    // Not ends of a flight with fixed steps.
-    case SimulationEnd::kStepSize:
-    case SimulationEnd::kStepLimit:
-    case SimulationEnd::kStopped:
-    case SimulationEnd::kSpun:
-    case SimulationEnd::kRolledOver:
-      break;
   }
   VERIDYN_ASSERT(false);
   return {};
@@ -277,7 +270,7 @@ SimulatedFlight simulate(const SimulationOptions& o, Progress& progress) {
                             .bank = 0.0,
                             .gravity = o.gravity});
   if (!flight.trim.usable()) {
-    flight.end = SimulationEnd::kNoTrim;
+    flight.end = FlightEnd::kNoTrim;
     return flight;
   }
   const LinearModel linear = linearise(o.subject, flight.trim);
@@ -302,7 +295,7 @@ SimulatedFlight simulate(const SimulationOptions& o, Progress& progress) {
       aircraft.change_model(o.changes[changed++].model);
     const TruthSample truth = aircraft.truth();
     if (!aircraft.finite() || !std::isfinite(truth[Truth::kAirspeed])) {
-      flight.end = SimulationEnd::kDiverged;
+      flight.end = FlightEnd::kDiverged;
       break;
     }
     for (Sensor& sensor : sensors) sensor.observe(t, truth);
@@ -311,9 +304,9 @@ SimulatedFlight simulate(const SimulationOptions& o, Progress& progress) {
     flight.alpha_min = std::min(flight.alpha_min, truth[Truth::kAlpha]);
     flight.alpha_max = std::max(flight.alpha_max, truth[Truth::kAlpha]);
     flight.end = end_of(truth, o.ground);
-    if (flight.end != SimulationEnd::kCompleted) break;
+    if (flight.end != FlightEnd::kCompleted) break;
     if (k % 2000 == 0 && !progress.update(static_cast<double>(k) / static_cast<double>(std::max(1LL, steps)))) {
-      flight.end = SimulationEnd::kInterrupted;
+      flight.end = FlightEnd::kInterrupted;
       break;
     }
     if (k < steps) aircraft.advance(t, truth, pilot.command(t, o.step, truth, excitation));

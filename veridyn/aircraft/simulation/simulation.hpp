@@ -13,7 +13,6 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/recording.hpp"
-#include "veridyn/core/simulation_end.hpp"
 
 namespace veridyn::aircraft {
 
@@ -45,6 +44,16 @@ struct SimulationOptions {
   std::uint64_t seed = 1;
 };
 
+/// Why a simulated flight ended.
+enum class FlightEnd {
+  kCompleted,    ///< flown to the end
+  kInterrupted,  ///< the caller's progress asked to stop
+  kDiverged,     ///< the state became NaN or infinite: the step is too long for this aircraft
+  kNoTrim,       ///< steady level flight at the desired airspeed does not exist
+  kGround,       ///< touched the ground
+  kUpset,        ///< angle of attack beyond 90 deg or rates beyond 50 rad/s, where the model means nothing
+};
+
 /// A simulated flight: what the sensors saw and what was true (see kTruthChannels).
 struct SimulatedFlight {
   Recording measured;
@@ -53,8 +62,8 @@ struct SimulatedFlight {
   Trim trim;
   double end_time = 0.0;                    ///< [s]
   double alpha_min = 0.0, alpha_max = 0.0;  ///< gusts included [rad]
-  SimulationEnd end = SimulationEnd::kCompleted;
-  [[nodiscard]] bool usable() const { return end == SimulationEnd::kCompleted; }
+  FlightEnd end = FlightEnd::kCompleted;
+  [[nodiscard]] bool usable() const { return end == FlightEnd::kCompleted; }
   [[nodiscard]] std::string message() const;
 };
 

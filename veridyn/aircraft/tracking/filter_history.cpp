@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/io/tables/csv_text.hpp"
+#include "veridyn/numerics/moments.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -86,10 +86,7 @@ Recording FilterHistory::recording() const {
   return out;
 }
 
-double FilterHistory::model_based_share() const {
-  if (time_.empty()) return 0.0;
-  return std::accumulate(model_based().begin(), model_based().end(), 0.0) / static_cast<double>(time_.size());
-}
+double FilterHistory::model_based_share() const { return numerics::mean(model_based()); }
 
 std::vector<TimeSpan> FilterHistory::model_free() const {
   std::vector<TimeSpan> spans;

@@ -14,11 +14,6 @@ namespace {
 
 constexpr double kLeastDensity = 0.05;
 
-double flat_top_weight(Eigen::Index lag, Eigen::Index window) {
-  if (lag <= window) return 1.0;
-  return std::max(0.0, 2.0 - static_cast<double>(lag) / static_cast<double>(window));
-}
-
 // The residual of one output, all segments end to end, with gaps as zeros.
 void pool(const std::vector<RowMatrix>& residuals, Eigen::Index output, Eigen::VectorXd& values,
           SegmentRanges& segments) {
@@ -89,7 +84,7 @@ ResidualSpectrum residual_spectrum(const std::vector<RowMatrix>& residuals, Eige
     for (Eigen::Index b = a; b < p; ++b) {
       std::fill(sequence.begin(), sequence.end(), 0.0);
       for (Eigen::Index lag = 0; lag < lags && lag < longest; ++lag) {
-        const double weight = lag == 0 ? 1.0 : flat_top_weight(lag, w);
+        const double weight = flat_top_weight(lag, w);
         sequence[lag] += weight * lagged_covariance(residuals, a, b, lag, total);
         if (lag > 0) sequence[L - lag] += weight * lagged_covariance(residuals, b, a, lag, total);
       }

@@ -42,11 +42,6 @@ Eigen::MatrixXd bartlett(const RowMatrix& g, const SegmentRanges& segments, Eige
   return total / static_cast<double>(width);
 }
 
-double flat_top_weight(Eigen::Index lag, Eigen::Index window) {
-  if (lag == 0 || lag <= window) return 1.0;
-  return std::max(0.0, 2.0 - static_cast<double>(lag) / static_cast<double>(window));
-}
-
 // Share of a zero-sum sequence's long-run variance that the lag window still covers, and the window's degrees of
 // freedom.
 void set_reliability(LongRunCovariance& result, double rows, Eigen::Index window) {
@@ -78,6 +73,11 @@ Eigen::MatrixXd raised_to(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& 
 }
 
 }  // namespace
+
+double flat_top_weight(Eigen::Index lag, Eigen::Index window) {
+  if (lag <= window) return 1.0;
+  return std::max(0.0, 2.0 - static_cast<double>(lag) / static_cast<double>(window));
+}
 
 Eigen::Index correlation_length(const Eigen::Ref<const Eigen::VectorXd>& x, const SegmentRanges& segments,
                                 Eigen::Index max_lag) {

@@ -23,8 +23,11 @@ using SegmentRanges = std::vector<std::pair<Eigen::Index, Eigen::Index>>;
 [[nodiscard]] Eigen::Index correlation_length(const Eigen::Ref<const Eigen::VectorXd>& x, const SegmentRanges& segments,
                                               Eigen::Index max_lag);
 
-/// Sandwich filling of an estimator with scores g_k (rows of `scores`), lag weights 1 up to `window` and falling
-/// straight to 0 at twice that (flat-top window: no bias from correlation shorter than `window`, unlike Bartlett's).
+/// Weight of a lag, not negative, in a flat-top window: 1 up to `window`, from there straight to 0 at twice that.
+[[nodiscard]] double flat_top_weight(Eigen::Index lag, Eigen::Index window);
+
+/// Sandwich filling of an estimator with scores g_k (rows of `scores`), lags weighted by `flat_top_weight`
+/// (no bias from correlation shorter than `window`, unlike Bartlett's).
 /// Computed as 2 B(2w) - B(w) of Bartlett sums, each by running sums over the window: cost N n^2 whatever the window.
 /// Directions whose variance comes out below a quarter of Bartlett's are raised to it, so the result is positive
 /// semi-definite. Lags stay within segments. Since scores of an estimate sum to zero, S is divided by 1 -

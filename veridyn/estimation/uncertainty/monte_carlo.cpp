@@ -10,6 +10,7 @@
 #include "veridyn/core/index.hpp"
 #include "veridyn/numerics/gaussian_copula.hpp"
 #include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
+#include "veridyn/numerics/moments.hpp"
 #include "veridyn/numerics/parallel.hpp"
 #include "veridyn/numerics/random.hpp"
 #include "veridyn/numerics/statistics.hpp"
@@ -75,9 +76,7 @@ ErrorDistribution describe(std::vector<double>& error, double coverage) {
   d.low = error[rank_of(p, count)];
   d.high = error[rank_of(1.0 - p, count)];
   d.sigma = std::max(std::abs(d.low), std::abs(d.high)) / numerics::normal_quantile(1.0 - p);
-  double sum = 0.0;
-  for (const double e : error) sum += e;
-  d.mean = sum / static_cast<double>(count);
+  d.mean = numerics::mean(error);
   double squares = 0.0;
   for (const double e : error) squares += (e - d.mean) * (e - d.mean);
   d.sd = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, count - 1)));

@@ -8,6 +8,7 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/core/quiet_progress.hpp"
 #include "veridyn/numerics/parallel.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -46,17 +47,6 @@ class WithOneFixed final : public ParametricModel {
   const ParametricModel& model_;
   std::vector<ModelParameter> parameters_;
   const std::vector<std::vector<ModelParameter>>& initial_;
-};
-
-/// View of a progress whose interruption reaches fits on other threads.
-class InterruptionOnly : public Progress {
- public:
-  explicit InterruptionOnly(const Progress& outer) : outer_(outer) {}
-  [[nodiscard]] bool update(double) override { return !outer_.interrupted(); }
-  [[nodiscard]] bool interrupted() const override { return outer_.interrupted(); }
-
- private:
-  const Progress& outer_;
 };
 
 /// One side of a profile: points ordered away from the estimate, of the signed root r of the statistic.
@@ -126,7 +116,7 @@ class Profiling {
     OutputErrorOptions o = fit_;
     o.threads = progress_.threads();
     o.search_start = theta_;
-    InterruptionOnly watch(progress_);
+    QuietProgress watch(progress_, 0);
     // What the given estimate costs, by the same computation.
     o.max_steps = 0;
     const OutputErrorEstimate before = output_error(all, measured_, o, watch);
@@ -187,7 +177,7 @@ class Profiling {
     OutputErrorOptions o = fit_;
     o.threads = threads;
     o.search_start = std::move(from);
-    InterruptionOnly watch(progress_);
+    QuietProgress watch(progress_, 0);
     const OutputErrorEstimate e = output_error(model, measured_, o, watch);
     if (!e.usable()) return std::nullopt;
     return ProfilePoint{value, 2.0 * (cost(model, e, parameter) - cost_) / dispersion_of(parameter), e.theta};

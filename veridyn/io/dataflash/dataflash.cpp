@@ -5,18 +5,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <optional>
 #include <set>
 
+#include "veridyn/core/bytes.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/io/dataflash/dataflash_schema.hpp"
 #include "veridyn/io/log/clock_restarts.hpp"
 #include "veridyn/io/log/gather.hpp"
-#include "veridyn/io/log/mapped_file.hpp"
 #include "veridyn/io/log/time_stamps.hpp"
 
 namespace veridyn::io {
@@ -37,26 +36,19 @@ struct Layout {
   std::vector<double> borrowed_time;  ///< for types without stamps: that of the record before [s]
 };
 
-template <typename T>
-T load(const char* from) {
-  T value;
-  std::memcpy(&value, from, sizeof value);
-  return value;
-}
-
 double load_stamp(const char* record, const DataFlashColumn& column) {
   const char* const from = record + column.offset;
   switch (column.type) {
     case 'Q':
-      return static_cast<double>(load<std::uint64_t>(from));
+      return static_cast<double>(load_number<std::uint64_t>(from));
     case 'q':
-      return static_cast<double>(load<std::int64_t>(from));
+      return static_cast<double>(load_number<std::int64_t>(from));
     case 'i':
-      return static_cast<double>(load<std::int32_t>(from));
+      return static_cast<double>(load_number<std::int32_t>(from));
     case 'd':
-      return load<double>(from);
+      return load_number<double>(from);
     default:
-      return static_cast<double>(load<std::uint32_t>(from));
+      return static_cast<double>(load_number<std::uint32_t>(from));
   }
 }
 
@@ -247,7 +239,7 @@ void read_units(std::string_view data, const std::vector<Layout>& layouts, DataF
       const auto* value = column("Mult", "d");
       if (id == nullptr || value == nullptr) continue;
       for (const auto record : layout.records) {
-        units.add_multiplier(data[record + id->offset], load<double>(data.data() + record + value->offset));
+        units.add_multiplier(data[record + id->offset], load_number<double>(data.data() + record + value->offset));
       }
     } else if (name == "FMTU") {
       const auto* type = column("FmtType", "B");
@@ -356,8 +348,8 @@ std::map<int, std::pair<std::vector<std::uint64_t>, std::vector<double>>> split_
   for (std::size_t i = 0; i < layout.records.size(); ++i) {
     const char* const from = data.data() + layout.records[i] + offset;
     int instance = static_cast<unsigned char>(*from);
-    if (size == 2) instance = load<std::uint16_t>(from);
-    if (size == 4) instance = static_cast<int>(load<std::uint32_t>(from) & 0x7fffffffU);
+    if (size == 2) instance = load_number<std::uint16_t>(from);
+    if (size == 4) instance = static_cast<int>(load_number<std::uint32_t>(from) & 0x7fffffffU);
     auto& [records, times] = parts[instance];
     if (parts.size() > 32) return {};
     records.push_back(layout.records[i]);
@@ -429,11 +421,6 @@ Log read_dataflash(std::string_view bytes, std::string source) {
   index.restarts().report_to(log);
   internal::finish(log);
   return log;
-}
-
-Log read_dataflash_file(const std::filesystem::path& path) {
-  const MappedFile file(path);
-  return read_dataflash(file.bytes(), path.string());
 }
 
 }  // namespace veridyn::io

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "veridyn/core/index.hpp"
+#include "veridyn/core/rank.hpp"
 
 namespace veridyn::io {
 namespace {
@@ -14,9 +15,7 @@ double median_step(const std::vector<double>& stamps) {
   if (stamps.size() < 2) return 0.0;
   std::vector<double> steps(stamps.size() - 1);
   for (std::size_t i = 0; i + 1 < stamps.size(); ++i) steps[i] = std::abs(stamps[i + 1] - stamps[i]);
-  const auto middle = steps.begin() + signed_index(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return upper_median(steps);
 }
 
 // Rows whose stamps are not finite are taken out before.
@@ -37,9 +36,8 @@ std::vector<bool> find_spikes(const std::vector<double>& stamps) {
     for (std::size_t k = begin; k + 1 < end; ++k) in_order = in_order && stamps[k] <= stamps[k + 1];
     if (in_order) continue;
     std::copy(stamps.begin() + signed_index(begin), stamps.begin() + signed_index(end), window.begin());
-    const auto middle = window.begin() + signed_index((end - begin) / 2);
-    std::nth_element(window.begin(), middle, window.begin() + signed_index(end - begin));
-    spike[i] = std::abs(stamps[i] - *middle) > limit;
+    const double middle = upper_median(std::span(window).first(end - begin));
+    spike[i] = std::abs(stamps[i] - middle) > limit;
   }
   return spike;
 }

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <optional>
 
+#include "veridyn/core/bytes.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/matlab/mat_objects.hpp"
 #include "veridyn/io/matlab/mat_value.hpp"
@@ -49,16 +49,6 @@ struct Element {
   std::string_view data;
 };
 
-template <typename T>
-T load(const char* from, bool swap) {
-  unsigned char raw[sizeof(T)];
-  std::memcpy(raw, from, sizeof(T));
-  if (swap) std::reverse(raw, raw + sizeof(T));
-  T value;
-  std::memcpy(&value, raw, sizeof(T));
-  return value;
-}
-
 std::size_t width_of(std::uint32_t type) {
   switch (type) {
     case kInt8:
@@ -86,28 +76,28 @@ std::size_t width_of(std::uint32_t type) {
 double number_at(const char* from, std::uint32_t type, bool swap) {
   switch (type) {
     case kInt8:
-      return static_cast<double>(load<std::int8_t>(from, swap));
+      return static_cast<double>(load_number<std::int8_t>(from, swap));
     case kUint8:
     case kUtf8:
-      return static_cast<double>(load<std::uint8_t>(from, swap));
+      return static_cast<double>(load_number<std::uint8_t>(from, swap));
     case kInt16:
-      return static_cast<double>(load<std::int16_t>(from, swap));
+      return static_cast<double>(load_number<std::int16_t>(from, swap));
     case kUint16:
     case kUtf16:
-      return static_cast<double>(load<std::uint16_t>(from, swap));
+      return static_cast<double>(load_number<std::uint16_t>(from, swap));
     case kInt32:
-      return static_cast<double>(load<std::int32_t>(from, swap));
+      return static_cast<double>(load_number<std::int32_t>(from, swap));
     case kUint32:
     case kUtf32:
-      return static_cast<double>(load<std::uint32_t>(from, swap));
+      return static_cast<double>(load_number<std::uint32_t>(from, swap));
     case kSingle:
-      return static_cast<double>(load<float>(from, swap));
+      return static_cast<double>(load_number<float>(from, swap));
     case kInt64:
-      return static_cast<double>(load<std::int64_t>(from, swap));
+      return static_cast<double>(load_number<std::int64_t>(from, swap));
     case kUint64:
-      return static_cast<double>(load<std::uint64_t>(from, swap));
+      return static_cast<double>(load_number<std::uint64_t>(from, swap));
     default:
-      return load<double>(from, swap);
+      return load_number<double>(from, swap);
   }
 }
 
@@ -121,7 +111,7 @@ class Elements {
 
   std::optional<Element> next(bool padded = true) {
     if (rest_.size() < 8) return std::nullopt;
-    const auto word = load<std::uint32_t>(rest_.data(), swap_);
+    const auto word = load_number<std::uint32_t>(rest_.data(), swap_);
     if ((word >> 16U) != 0) {  // up to four bytes lie inside of the tag
       const std::size_t size = word >> 16U;
       if (size > 4) return std::nullopt;
@@ -129,7 +119,7 @@ class Elements {
       rest_.remove_prefix(8);
       return element;
     }
-    const std::size_t size = load<std::uint32_t>(rest_.data() + 4, swap_);
+    const std::size_t size = load_number<std::uint32_t>(rest_.data() + 4, swap_);
     if (size > rest_.size() - 8) return std::nullopt;
     const Element element{word, rest_.substr(8, size)};
     // The last element of a compressed variable may lack its padding.
@@ -166,7 +156,7 @@ std::optional<std::string> inflated(std::string_view packed, bool swap, const Ma
     return state == Z_OK || state == Z_STREAM_END;
   };
   bool good = fill() && filled == kTag;
-  const std::size_t size = good ? load<std::uint32_t>(result.data() + 4, swap) : 0;
+  const std::size_t size = good ? load_number<std::uint32_t>(result.data() + 4, swap) : 0;
   try {
     require_mat_size(static_cast<double>(size), "", source);
     budget.require_room(static_cast<double>(size), "");
@@ -196,13 +186,13 @@ class Parser {
     Elements elements(bytes, swap_);
     const auto flags = elements.next();
     if (!flags || flags->type != kUint32 || flags->data.size() < 8) return std::nullopt;
-    const std::uint32_t kind = load<std::uint32_t>(flags->data.data(), swap_) & 0xffU;
+    const std::uint32_t kind = load_number<std::uint32_t>(flags->data.data(), swap_) & 0xffU;
     if (kind == kOpaqueClass) return object(std::move(value), elements, depth);
     const auto extents = elements.next();
     if (!extents || extents->type != kInt32 || extents->data.size() < 8) return std::nullopt;
     std::size_t count = 1;
     for (std::size_t i = 0; i + 4 <= extents->data.size(); i += 4) {
-      const auto extent = load<std::int32_t>(extents->data.data() + i, swap_);
+      const auto extent = load_number<std::int32_t>(extents->data.data() + i, swap_);
       if (extent < 0) return std::nullopt;
       value.extents.push_back(static_cast<std::size_t>(extent));
       count *= static_cast<std::size_t>(extent);
@@ -298,7 +288,7 @@ class Parser {
     value.kind = MatValue::Kind::kStruct;
     const auto length = elements.next();
     if (!length || length->type != kInt32 || length->data.size() < 4) return std::nullopt;
-    const auto width = load<std::int32_t>(length->data.data(), swap_);
+    const auto width = load_number<std::int32_t>(length->data.data(), swap_);
     const auto names = elements.next();
     if (!names || names->type != kInt8 || width <= 0 || width > 4096) return std::nullopt;
     const auto size = static_cast<std::size_t>(width);

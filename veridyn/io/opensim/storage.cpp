@@ -9,7 +9,6 @@
 #include <set>
 
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/files.hpp"
 #include "veridyn/core/text.hpp"
 
 namespace veridyn::io {
@@ -137,8 +136,6 @@ Storage parse_storage(std::string_view text, std::string source) {
   }
   return storage;
 }
-
-Storage read_storage(const std::filesystem::path& path) { return parse_storage(read_file(path), path.string()); }
 
 std::string to_storage_text(const Storage& storage) {
   std::string text = fmt::format("{}\nversion=1\nnRows={}\nnColumns={}\ninDegrees={}\nendheader\ntime",

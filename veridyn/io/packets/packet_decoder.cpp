@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 
 #include "veridyn/core/assert.hpp"
+#include "veridyn/core/bytes.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/rotation.hpp"
 
@@ -14,9 +14,7 @@ namespace {
 
 template <typename T>
 double read_as(const char* at) {
-  T value;
-  std::memcpy(&value, at, sizeof value);
-  return static_cast<double>(value);
+  return static_cast<double>(load_number<T>(at));
 }
 
 double number_at(const char* at, GatherType type) {

@@ -10,6 +10,7 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/io/results/json_text.hpp"
 
 namespace veridyn::io {
 namespace {
@@ -319,7 +320,7 @@ std::string to_json(const Estimate& estimate) {
                                          {"widest_then", next.widest_then},
                                          {"share_then", number(next.share_then)}});
   }
-  return root.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return json_text(root, 2) + "\n";
 }
 
 Estimate read_estimate(const std::filesystem::path& path) {

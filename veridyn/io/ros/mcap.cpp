@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <map>
 #include <optional>
 #include <vector>
 
+#include "veridyn/core/bytes.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/io/log/mapped_file.hpp"
 #include "veridyn/io/packets/crc32.hpp"
 #include "veridyn/io/ros/mcap_chunk.hpp"
 #include "veridyn/io/ros/ros_log.hpp"
@@ -36,46 +35,6 @@ enum Opcode : unsigned char {
 };
 
 constexpr std::size_t kFooterSize = 20, kMessageSize = 22, kChunkSize = 40;
-
-template <typename Number>
-Number little(const char* from) {
-  Number value;
-  std::memcpy(&value, from, sizeof value);
-  return value;
-}
-
-/// Reads the fields of a record one after the other; empty once it ends.
-class RecordFields {
- public:
-  explicit RecordFields(std::string_view body) : body_(body) {}
-  template <typename Number>
-  Number number() {
-    if (body_.size() < sizeof(Number)) {
-      failed_ = true;
-      body_ = {};
-      return 0;
-    }
-    const auto value = little<Number>(body_.data());
-    body_.remove_prefix(sizeof(Number));
-    return value;
-  }
-  std::string_view text() { return bytes(number<std::uint32_t>()); }
-  std::string_view bytes(std::uint64_t size) {
-    if (size > body_.size()) {
-      failed_ = true;
-      size = body_.size();
-    }
-    const std::string_view part = body_.substr(0, size);
-    body_.remove_prefix(size);
-    return part;
-  }
-  [[nodiscard]] std::string_view rest() const { return body_; }
-  [[nodiscard]] bool failed() const { return failed_; }
-
- private:
-  std::string_view body_;
-  bool failed_ = false;
-};
 
 class McapReader {
  public:
@@ -117,9 +76,9 @@ class McapReader {
     if (records.size() < kRecordHeader + kFooterSize) return;
     const std::size_t footer = records.size() - kRecordHeader - kFooterSize;
     if (static_cast<unsigned char>(records[footer]) != kFooterRecord ||
-        little<std::uint64_t>(records.data() + footer + 1) != kFooterSize)
+        load_number<std::uint64_t>(records.data() + footer + 1) != kFooterSize)
       return;
-    RecordFields fields(records.substr(footer + kRecordHeader));
+    ByteReader fields(records.substr(footer + kRecordHeader));
     const auto start = fields.number<std::uint64_t>();
     (void)fields.number<std::uint64_t>();
     const auto crc = fields.number<std::uint32_t>();
@@ -129,25 +88,25 @@ class McapReader {
     std::string_view summary = records.substr(begin, footer - begin);
     while (summary.size() >= kRecordHeader) {
       const auto op = static_cast<unsigned char>(summary.front());
-      const auto size = little<std::uint64_t>(summary.data() + 1);
+      const auto size = load_number<std::uint64_t>(summary.data() + 1);
       if (size > summary.size() - kRecordHeader) return;
       const std::string_view body = summary.substr(kRecordHeader, size);
       if (op == kSchemaRecord) take_schema(body);
       if (op == kChannelRecord) take_channel(body);
-      if (op == kStatisticsRecord && crc != 0 && body.size() >= 8) counted_ = little<std::uint64_t>(body.data());
+      if (op == kStatisticsRecord && crc != 0 && body.size() >= 8) counted_ = load_number<std::uint64_t>(body.data());
       summary.remove_prefix(kRecordHeader + size);
     }
   }
 
   [[nodiscard]] static bool fits(std::string_view records, std::size_t at) {
     return records.size() - at >= kRecordHeader &&
-           little<std::uint64_t>(records.data() + at + 1) <= records.size() - at - kRecordHeader;
+           load_number<std::uint64_t>(records.data() + at + 1) <= records.size() - at - kRecordHeader;
   }
 
   /// Whether a record of a known kind that makes sense by itself stands here.
   [[nodiscard]] bool plausible(std::string_view records, std::size_t at, bool in_chunk) const {
     if (!fits(records, at)) return false;
-    const auto size = little<std::uint64_t>(records.data() + at + 1);
+    const auto size = load_number<std::uint64_t>(records.data() + at + 1);
     const char* const body = records.data() + at + kRecordHeader;
     switch (static_cast<unsigned char>(records[at])) {
       case kMessageRecord:
@@ -157,7 +116,7 @@ class McapReader {
       case kChannelRecord:
         return size >= 16;
       case kChunkRecord:
-        return !in_chunk && size >= kChunkSize && little<std::uint32_t>(body + 28) <= size - kChunkSize;
+        return !in_chunk && size >= kChunkSize && load_number<std::uint32_t>(body + 28) <= size - kChunkSize;
       case kHeaderRecord:
         return !in_chunk && size >= 8;
       case kFooterRecord:
@@ -175,7 +134,7 @@ class McapReader {
   [[nodiscard]] bool chained(std::string_view records, std::size_t at, bool in_chunk) const {
     const auto op = static_cast<unsigned char>(records[at]);
     if (op == 0 || op > kLastRecord || !plausible(records, at, in_chunk)) return false;
-    const std::size_t next = at + kRecordHeader + little<std::uint64_t>(records.data() + at + 1);
+    const std::size_t next = at + kRecordHeader + load_number<std::uint64_t>(records.data() + at + 1);
     if (next == records.size()) return true;
     const auto next_op = static_cast<unsigned char>(records[next]);
     return next_op <= kLastRecord && plausible(records, next, in_chunk);
@@ -185,7 +144,7 @@ class McapReader {
     std::size_t at = 0;
     while (at < records.size()) {
       if (plausible(records, at, in_chunk)) {
-        const std::size_t size = little<std::uint64_t>(records.data() + at + 1);
+        const std::size_t size = load_number<std::uint64_t>(records.data() + at + 1);
         const std::size_t next = at + kRecordHeader + size;
         if (next == records.size() || plausible(records, next, in_chunk) ||
             next_chained(records, at, in_chunk) > next) {
@@ -215,7 +174,7 @@ class McapReader {
         static_cast<unsigned char>(records[at]) != kChunkRecord || fits(records, at))
       return false;
     const std::string_view body = records.substr(at + kRecordHeader);
-    if (little<std::uint32_t>(body.data() + 28) > body.size() - kChunkSize ||
+    if (load_number<std::uint32_t>(body.data() + 28) > body.size() - kChunkSize ||
         next_chained(records, at, false) < records.size())
       return false;
     ++log_.damage.records_lost;
@@ -239,24 +198,24 @@ class McapReader {
   }
 
   void take_schema(std::string_view body) {
-    RecordFields fields(body);
+    ByteReader fields(body);
     const auto id = fields.number<std::uint16_t>();
     Schema schema;
-    schema.name = fields.text();
-    schema.encoding = fields.text();
-    schema.data = fields.text();
+    schema.name = fields.text<std::uint32_t>();
+    schema.encoding = fields.text<std::uint32_t>();
+    schema.data = fields.text<std::uint32_t>();
     if (!fields.failed() && id != 0) schemas_.try_emplace(id, std::move(schema));
   }
 
   void take_channel(std::string_view body) {
-    RecordFields fields(body);
+    ByteReader fields(body);
     const auto id = fields.number<std::uint16_t>();
     if (topics_.size() <= id) topics_.resize(id + std::size_t{1}, kUnknown);
     if (topics_[id] != kUnknown) return;
     const auto schema_id = fields.number<std::uint16_t>();
     RosTopic topic;
-    topic.name = fields.text();
-    topic.encoding = fields.text();
+    topic.name = fields.text<std::uint32_t>();
+    topic.encoding = fields.text<std::uint32_t>();
     if (fields.failed()) return;
     if (const auto schema = schemas_.find(schema_id); schema != schemas_.end()) {
       topic.type = schema->second.name;
@@ -267,22 +226,23 @@ class McapReader {
   }
 
   void take_message(std::string_view body) {
-    const auto id = little<std::uint16_t>(body.data());
+    const auto id = load_number<std::uint16_t>(body.data());
     const std::size_t topic = id < topics_.size() ? topics_[id] : kUnknown;
     if (topic == kUnknown) {
       ++unknown_channels_;
       ++log_.damage.records_lost;
       return;
     }
-    messages_.add(topic, static_cast<Nanoseconds>(little<std::uint64_t>(body.data() + 6)), body.substr(kMessageSize));
+    messages_.add(topic, static_cast<Nanoseconds>(load_number<std::uint64_t>(body.data() + 6)),
+                  body.substr(kMessageSize));
   }
 
   void take_chunk(std::string_view body) {
-    RecordFields fields(body);
+    ByteReader fields(body);
     (void)fields.bytes(16);  // first and last moment
     const auto size = fields.number<std::uint64_t>();
     const auto crc = fields.number<std::uint32_t>();
-    const std::string_view compression = fields.text();
+    const std::string_view compression = fields.text<std::uint32_t>();
     const auto packed_size = fields.number<std::uint64_t>();
     const std::string_view packed = fields.bytes(packed_size);
     const bool cut = fields.failed();
@@ -352,11 +312,6 @@ Log read_mcap(std::string_view bytes, std::string source) {
   messages.finish(log);
   internal::finish(log);
   return log;
-}
-
-Log read_mcap_file(const std::filesystem::path& path) {
-  const MappedFile file(path);
-  return read_mcap(file.bytes(), path.string());
 }
 
 }  // namespace veridyn::io

@@ -1,7 +1,8 @@
 #include "veridyn/io/ros/message_clock.hpp"
 
-#include <algorithm>
 #include <cstdint>
+
+#include "veridyn/core/rank.hpp"
 
 namespace veridyn::io::internal {
 namespace {
@@ -18,11 +19,7 @@ Nanoseconds sum(Nanoseconds a, Nanoseconds b) {
   return static_cast<Nanoseconds>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
 }
 
-Nanoseconds least_delay(std::vector<Nanoseconds> delays) {
-  const auto rank = delays.begin() + static_cast<std::ptrdiff_t>(delays.size() / 100);
-  std::nth_element(delays.begin(), rank, delays.end());
-  return *rank;
-}
+Nanoseconds least_delay(std::vector<Nanoseconds> delays) { return value_of_rank(delays, delays.size() / 100); }
 
 }  // namespace
 

@@ -1,10 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <cstring>
 #include <string_view>
-#include <utility>
 
+#include "veridyn/core/bytes.hpp"
 #include "veridyn/io/ros/message_layout.hpp"
 
 namespace veridyn::io::internal {
@@ -66,13 +65,7 @@ class MessageCursor {
 
   template <typename Number>
   [[nodiscard]] Number load(const char* from) const {
-    char bytes[sizeof(Number)];
-    std::memcpy(bytes, from, sizeof bytes);
-    if (swapped_)
-      for (std::size_t i = 0; i < sizeof bytes / 2; ++i) std::swap(bytes[i], bytes[sizeof bytes - 1 - i]);
-    Number value;
-    std::memcpy(&value, bytes, sizeof value);
-    return value;
+    return load_number<Number>(from, swapped_);
   }
 
  private:

@@ -9,7 +9,7 @@ namespace veridyn::io {
 
 /// A text as a cell of our own CSV files: in quotes where it holds a comma, a quote or a line break.
 [[nodiscard]] inline std::string csv_text(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   std::string cell = "\"";
   for (const char c : text) cell += c == '"' ? "\"\"" : std::string(1, c);
   return cell + "\"";

@@ -7,19 +7,10 @@
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/io/tables/csv.hpp"
+#include "veridyn/io/tables/csv_text.hpp"
 
 namespace veridyn::io {
 namespace {
-
-std::string quoted(const std::string& cell) {
-  if (cell.find_first_of(",\"\n\r") == std::string::npos) return cell;
-  std::string result = "\"";
-  for (const char c : cell) {
-    if (c == '"') result += '"';
-    result += c;
-  }
-  return result + '"';
-}
 
 bool same_base(const TimeBase& a, const TimeBase& b) { return a == b || (a && b && *a == *b); }
 
@@ -56,7 +47,7 @@ std::string to_csv(const Recording& recording) {
   if (recording.frame == Frame::kFlu) fmt::format_to(to, "# frame: flu\n");
   fmt::format_to(to, "time[s]");
   for (const Channel& channel : recording.channels()) {
-    fmt::format_to(to, ",{}", quoted(fmt::format("{}[{}]", channel.name, channel.unit.si_name())));
+    fmt::format_to(to, ",{}", csv_text(fmt::format("{}[{}]", channel.name, channel.unit.si_name())));
   }
   out.push_back('\n');
   std::vector<std::size_t> next(bases.size(), 0);

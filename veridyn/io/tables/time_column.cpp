@@ -11,6 +11,7 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/core/rank.hpp"
 #include "veridyn/core/text.hpp"
 #include "veridyn/core/units.hpp"
 #include "veridyn/io/tables/csv_cells.hpp"
@@ -108,10 +109,7 @@ double median_step(std::span<const double> stamps) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < stamps.size(); ++i)
     if (stamps[i] > stamps[i - 1]) steps.push_back(stamps[i] - stamps[i - 1]);
-  if (steps.empty()) return 0.0;
-  const auto middle = steps.begin() + signed_index(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return steps.empty() ? 0.0 : upper_median(steps);
 }
 
 /// The unit in which the numbers are those of a Unix clock in the years 2000 to 2100; empty: in none.

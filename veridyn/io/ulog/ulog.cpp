@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <limits>
 #include <set>
 #include <utility>
 
+#include "veridyn/core/bytes.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/log/clock_restarts.hpp"
-#include "veridyn/io/log/mapped_file.hpp"
 #include "veridyn/io/log/time_stamps.hpp"
 #include "veridyn/io/ulog/px4_units.hpp"
 #include "veridyn/io/ulog/ulog_format.hpp"
@@ -25,13 +24,6 @@ constexpr std::string_view kULogMagic{"\x55\x4C\x6F\x67\x01\x12\x35", 7};
 constexpr std::string_view kSync{"\x2F\x73\x13\x20\x25\x0C\xBB\x12", 8};
 constexpr std::size_t kHeader = 16;
 constexpr std::size_t kIds = 65536;
-
-template <typename T>
-T load(const char* from) {
-  T value;
-  std::memcpy(&value, from, sizeof value);
-  return value;
-}
 
 struct Subscription {
   std::string name;
@@ -55,8 +47,8 @@ const ULogField* find_stamp(const ULogLayout& layout) {
 /// In seconds.
 double load_stamp(const char* data, const ULogField& stamp) {
   const char* const from = data + stamp.offset;
-  return 1e-6 * (stamp.type == GatherType::kUint64 ? static_cast<double>(load<std::uint64_t>(from))
-                                                   : static_cast<double>(load<std::uint32_t>(from)));
+  return 1e-6 * (stamp.type == GatherType::kUint64 ? static_cast<double>(load_number<std::uint64_t>(from))
+                                                   : static_cast<double>(load_number<std::uint32_t>(from)));
 }
 
 /// View of the bytes of a log, walked from message to message.
@@ -90,9 +82,9 @@ class Walker {
   std::vector<std::size_t> segments() {
     std::vector<std::size_t> ends;
     if (data_.size() >= kHeader + 43 && data_[kHeader + 2] == 'B' &&
-        load<std::uint16_t>(data_.data() + kHeader) >= 40) {
+        load_number<std::uint16_t>(data_.data() + kHeader) >= 40) {
       const char* const flags = data_.data() + kHeader + 3;
-      const auto incompatible = load<std::uint64_t>(flags + 8);
+      const auto incompatible = load_number<std::uint64_t>(flags + 8);
       if ((incompatible & ~std::uint64_t{1}) != 0) {
         throw InputError(log_.source, fmt::format("this ULog needs features that this reader does not know "
                                                   "(incompatible flag bits {:#x})",
@@ -100,7 +92,7 @@ class Walker {
       }
       if ((incompatible & 1U) != 0) {
         for (int i = 0; i < 3; ++i) {
-          const auto offset = load<std::uint64_t>(flags + 16 + 8 * i);
+          const auto offset = load_number<std::uint64_t>(flags + 16 + 8 * i);
           if (offset > kHeader + 43 && offset < data_.size()) ends.push_back(static_cast<std::size_t>(offset));
         }
         std::sort(ends.begin(), ends.end());
@@ -110,7 +102,7 @@ class Walker {
     return ends;
   }
 
-  [[nodiscard]] std::size_t size_at(std::size_t at) const { return load<std::uint16_t>(data_.data() + at); }
+  [[nodiscard]] std::size_t size_at(std::size_t at) const { return load_number<std::uint16_t>(data_.data() + at); }
   /// Whether another log begins here.
   [[nodiscard]] bool is_header(std::size_t at, std::size_t end) const {
     return at + kHeader <= end && data_.substr(at, kULogMagic.size()) == kULogMagic;
@@ -129,7 +121,7 @@ class Walker {
     const char* const body = data_.data() + at + 3;
     switch (data_[at + 2]) {
       case 'D':
-        return size > 2 && subscription_of_[load<std::uint16_t>(body)] >= 0;
+        return size > 2 && subscription_of_[load_number<std::uint16_t>(body)] >= 0;
       case 'F':
         return std::memchr(body, ':', std::min<std::size_t>(size, 256)) != nullptr;
       case 'I':
@@ -228,7 +220,7 @@ class Walker {
     const std::string_view body = data_.substr(at + 3, size_at(at));
     switch (data_[at + 2]) {
       case 'D': {
-        Subscription& subscription = subscriptions_[subscription_of_[load<std::uint16_t>(body.data())]];
+        Subscription& subscription = subscriptions_[subscription_of_[load_number<std::uint16_t>(body.data())]];
         subscription.records.push_back(at + 5);
         subscription.sizes.push_back(static_cast<std::uint16_t>(body.size() - 2));
         data_begun_ = true;
@@ -247,12 +239,13 @@ class Walker {
         subscription.session = formats_.size() - 1;
         subscription.instance = static_cast<unsigned char>(body[0]);
         subscription.name = std::string(body.substr(3, body.substr(3).find('\0')));
-        subscription_of_[load<std::uint16_t>(body.data() + 1)] = static_cast<std::int32_t>(subscriptions_.size());
+        subscription_of_[load_number<std::uint16_t>(body.data() + 1)] =
+            static_cast<std::int32_t>(subscriptions_.size());
         subscriptions_.push_back(std::move(subscription));
         break;
       }
       case 'R':
-        subscription_of_[load<std::uint16_t>(body.data())] = -1;
+        subscription_of_[load_number<std::uint16_t>(body.data())] = -1;
         break;
       case 'I':
         take_information(body, false, false);
@@ -274,7 +267,7 @@ class Walker {
         break;
       case 'O':
         ++log_.damage.dropouts;
-        log_.damage.dropout_s += 1e-3 * load<std::uint16_t>(body.data());
+        log_.damage.dropout_s += 1e-3 * load_number<std::uint16_t>(body.data());
         break;
       default:
         break;
@@ -344,7 +337,7 @@ class Walker {
   }
 
   void take_text(std::string_view body, std::size_t stamp_at, std::size_t at) {
-    const double time = 1e-6 * static_cast<double>(load<std::uint64_t>(body.data() + stamp_at));
+    const double time = 1e-6 * static_cast<double>(load_number<std::uint64_t>(body.data() + stamp_at));
     last_text_time_ = time;
     restarts_.add(time, at);
     take_event({time, "message", internal::printable(body.substr(stamp_at + 8))}, at);
@@ -482,11 +475,6 @@ Log read_ulog(std::string_view bytes, std::string source) {
   walker.restarts().report_to(log);
   internal::finish(log);
   return log;
-}
-
-Log read_ulog_file(const std::filesystem::path& path) {
-  const MappedFile file(path);
-  return read_ulog(file.bytes(), path.string());
 }
 
 }  // namespace veridyn::io

@@ -1,8 +1,8 @@
 #include "veridyn/io/ulog/ulog_key.hpp"
 
 #include <cstdint>
-#include <cstring>
 
+#include "veridyn/core/bytes.hpp"
 #include "veridyn/io/log/log.hpp"
 
 namespace veridyn::io {
@@ -21,9 +21,7 @@ std::optional<ULogKey> parse_ulog_key(std::string_view body) {
 std::optional<double> ulog_number(const ULogKey& key) {
   const auto as = [&]<typename T>(T) -> std::optional<double> {
     if (key.value.size() < sizeof(T)) return std::nullopt;
-    T value;
-    std::memcpy(&value, key.value.data(), sizeof value);
-    return static_cast<double>(value);
+    return static_cast<double>(load_number<T>(key.value.data()));
   };
   if (key.type == "float") return as(float{});
   if (key.type == "double") return as(double{});

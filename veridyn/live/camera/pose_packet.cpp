@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <span>
 
+#include "veridyn/core/bytes.hpp"
 #include "veridyn/io/packets/crc32.hpp"
-#include "veridyn/live/link/bytes.hpp"
 
 namespace veridyn::live {
 namespace {

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "veridyn/io/results/json_text.hpp"
+
 namespace veridyn::live {
 namespace {
 
@@ -21,9 +23,7 @@ std::string_view name_of(PageControls controls) {
   return "none";
 }
 
-std::string quoted(const std::string& text) {
-  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
+std::string quoted(const std::string& text) { return io::json_text(nlohmann::json(text)); }
 
 }  // namespace
 

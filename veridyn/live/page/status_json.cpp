@@ -4,6 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "veridyn/io/results/json_text.hpp"
+
 namespace veridyn::live {
 
 using nlohmann::json;
@@ -115,7 +117,7 @@ std::string status_json(const RigStatus& status, const LiveStudy& study, const F
                             {"feel", knob.feel}});
     }
   }
-  return j.dump(-1, ' ', false, json::error_handler_t::replace);
+  return io::json_text(j);
 }
 
 }  // namespace veridyn::live

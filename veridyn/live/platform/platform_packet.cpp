@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "veridyn/core/bytes.hpp"
 #include "veridyn/io/packets/crc32.hpp"
-#include "veridyn/live/link/bytes.hpp"
 
 namespace veridyn::live {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "veridyn/core/bytes.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/packets/crc32.hpp"
-#include "veridyn/live/link/bytes.hpp"
 
 namespace veridyn::live {
 namespace {
@@ -38,71 +38,37 @@ class RecordWriter {
   std::size_t at_ = 0;
 };
 
-/// Reads numbers and texts as `RecordWriter` writes them; after the end everything is zero and `ok` false.
-class RecordReader {
- public:
-  explicit RecordReader(std::string_view bytes) : bytes_(bytes) {}
-  template <typename T>
-  T get() {
-    if (bytes_.size() - at_ < sizeof(T)) {
-      ok_ = false;
-      return T{};
-    }
-    const T value = number_at<T>(bytes_, at_);
-    at_ += sizeof(T);
-    return value;
-  }
-  template <typename Length>
-  std::string_view text() {
-    const auto length = static_cast<std::size_t>(get<Length>());
-    if (!ok_ || bytes_.size() - at_ < length) {
-      ok_ = false;
-      return {};
-    }
-    const std::string_view text = bytes_.substr(at_, length);
-    at_ += length;
-    return text;
-  }
-  [[nodiscard]] bool ok() const { return ok_; }
-  [[nodiscard]] bool ended() const { return at_ == bytes_.size(); }
-
- private:
-  std::string_view bytes_;
-  std::size_t at_ = 0;
-  bool ok_ = true;
-};
-
-bool read_record(RecordReader& r, LiveRecord& record) {
-  const auto kind = r.get<std::uint8_t>();
+bool read_record(ByteReader& r, LiveRecord& record) {
+  const auto kind = r.number<std::uint8_t>();
   record = {};
   record.kind = static_cast<LiveRecord::Kind>(kind);
-  record.time = r.get<Nanoseconds>();
+  record.time = r.number<Nanoseconds>();
   switch (record.kind) {
     case LiveRecord::Kind::kDatagram: {
-      const auto link = r.get<std::uint8_t>();
+      const auto link = r.number<std::uint8_t>();
       if (link > static_cast<std::uint8_t>(LinkOf::kCamera)) return false;
       record.link = static_cast<LinkOf>(link);
-      record.datagram.arrival = r.get<Nanoseconds>();
-      record.datagram.sender.address = r.get<std::uint32_t>();
-      record.datagram.sender.port = r.get<std::uint16_t>();
+      record.datagram.arrival = r.number<Nanoseconds>();
+      record.datagram.sender.address = r.number<std::uint32_t>();
+      record.datagram.sender.port = r.number<std::uint16_t>();
       record.datagram.bytes = r.text<std::uint16_t>();
-      return r.ok();
+      return !r.failed();
     }
     case LiveRecord::Kind::kRequest: {
-      const auto request = r.get<std::uint8_t>();
+      const auto request = r.number<std::uint8_t>();
       record.request = static_cast<OperatorRequest>(request);
-      return r.ok() && request <= static_cast<std::uint8_t>(OperatorRequest::kSignsWrong);
+      return !r.failed() && request <= static_cast<std::uint8_t>(OperatorRequest::kSignsWrong);
     }
     case LiveRecord::Kind::kKnob:
-      record.knob = r.get<std::uint16_t>();
-      record.count = r.get<std::uint16_t>();
-      record.value = r.get<double>();
-      return r.ok();
+      record.knob = r.number<std::uint16_t>();
+      record.count = r.number<std::uint16_t>();
+      record.value = r.number<double>();
+      return !r.failed();
     case LiveRecord::Kind::kStep:
     case LiveRecord::Kind::kCommand:
-      record.sent = r.get<Nanoseconds>();
+      record.sent = r.number<Nanoseconds>();
       record.order = r.text<std::uint16_t>();
-      return r.ok();
+      return !r.failed();
   }
   return false;
 }
@@ -154,7 +120,7 @@ std::string framed(std::string_view content) {
 }
 
 bool for_each_record(std::string_view content, const std::function<void(const LiveRecord&)>& use) {
-  RecordReader r(content);
+  ByteReader r(content);
   LiveRecord record;
   while (!r.ended()) {
     if (!read_record(r, record)) return false;
@@ -165,15 +131,15 @@ bool for_each_record(std::string_view content, const std::function<void(const Li
 
 std::optional<LiveHead> decode_head(std::string_view content) {
   if (!content.starts_with(kHeadStart)) return std::nullopt;
-  RecordReader r(content.substr(kHeadStart.size()));
+  ByteReader r(content.substr(kHeadStart.size()));
   LiveHead head;
   head.program = r.text<std::uint32_t>();
   head.study_name = r.text<std::uint32_t>();
   head.study = r.text<std::uint32_t>();
-  head.started = r.get<Nanoseconds>();
-  head.started_utc = r.get<std::int64_t>();
-  head.session = r.get<std::uint32_t>();
-  if (!r.ok()) return std::nullopt;
+  head.started = r.number<Nanoseconds>();
+  head.started_utc = r.number<std::int64_t>();
+  head.session = r.number<std::uint32_t>();
+  if (r.failed()) return std::nullopt;
   return head;
 }
 

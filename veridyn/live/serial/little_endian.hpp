@@ -5,7 +5,7 @@
 #include <span>
 #include <type_traits>
 
-#include "veridyn/live/link/bytes.hpp"
+#include "veridyn/core/bytes.hpp"
 
 namespace veridyn::live {
 

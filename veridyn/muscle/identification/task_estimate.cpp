@@ -10,6 +10,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/core/quiet_progress.hpp"
 #include "veridyn/estimation/output_error/correlated_noise_model.hpp"
 #include "veridyn/muscle/identification/null_directions.hpp"
 #include "veridyn/muscle/identification/task_residuals.hpp"
@@ -423,24 +424,12 @@ class TaskEstimation {
     return ParameterStatus::kNotExcited;
   }
 
-  /// View of a progress for searches within a stage, which show none of their own.
-  class Watched : public Progress {
-   public:
-    explicit Watched(const Progress& outer) : outer_(outer) {}
-    [[nodiscard]] bool update(double) override { return !outer_.interrupted(); }
-    [[nodiscard]] bool interrupted() const override { return outer_.interrupted(); }
-    [[nodiscard]] int threads() const override { return outer_.threads(); }
-
-   private:
-    const Progress& outer_;
-  };
-
   const estimation::ParametricModel& model_;
   const std::vector<RowMatrix>& measured_;
   const Eigen::VectorXd& noise_;
   const TaskEstimateOptions& options_;
   Progress& progress_;
-  Watched quiet_{progress_};
+  QuietProgress quiet_{progress_, progress_.threads()};  ///< of searches within a stage
   Eigen::Index values_ = 0;
   std::vector<std::optional<OutputErrorEstimate>> finished_;  ///< by search
   std::vector<Eigen::VectorXd> rivals_;                       ///< where other searches ended with as good a fit

@@ -8,6 +8,7 @@
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/numerics/moments.hpp"
 #include "veridyn/numerics/sensitivity_indices.hpp"
 
 namespace veridyn::muscle {
@@ -73,18 +74,17 @@ MuscleSampling sample_muscles(const TaskResponses& responses, const MuscleSampli
   if (!table.completed) return sampling;
   for (Eigen::Index m = 0; m < muscles; ++m) {
     for (Eigen::Index t = 0; t < tasks; ++t) {
-      double sum = 0.0, squares = 0.0, count = 0.0, most = 0.0;
+      numerics::Moments errors;
+      double most = 0.0;
       for (const double e : table.nrmse.col(t).segment(m * n, n)) {
         if (!std::isfinite(e)) continue;
-        sum += e;
-        squares += e * e;
+        errors.add(e);
         most = std::max(most, e);
-        ++count;
       }
-      sampling.failed(m, t) = static_cast<int>(static_cast<double>(n) - count);
-      if (count == 0.0) continue;
-      sampling.mean(m, t) = sum / count;
-      sampling.sd(m, t) = std::sqrt(std::max(0.0, squares / count - std::pow(sum / count, 2)));
+      sampling.failed(m, t) = static_cast<int>(static_cast<double>(n) - errors.count);
+      if (errors.count == 0.0) continue;
+      sampling.mean(m, t) = errors.mean();
+      sampling.sd(m, t) = errors.sd();
       sampling.greatest(m, t) = most;
     }
   }

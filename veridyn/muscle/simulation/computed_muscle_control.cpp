@@ -284,7 +284,7 @@ ControlResult Controller::run(const StartState& pose, Progress& progress) {
   for (std::size_t w = 0; w < windows; ++w) {
     const double end = std::min(options_.end, options_.begin + static_cast<double>(w + 1) * options_.window);
     if (!plan_window(t, end, x.data())) {
-      result.trajectory.end = SimulationEnd::kStepSize;
+      result.trajectory.end = MotionEnd::kStepSize;
       result.trajectory.trouble = "the muscles alone could not be integrated over a window";
       break;
     }
@@ -301,7 +301,7 @@ ControlResult Controller::run(const StartState& pose, Progress& progress) {
       break;
     }
     if (!progress.update(static_cast<double>(w + 1) / static_cast<double>(windows))) {
-      result.trajectory.end = SimulationEnd::kInterrupted;
+      result.trajectory.end = MotionEnd::kInterrupted;
       result.trajectory.end_time = t;
       return result;
     }
@@ -344,15 +344,15 @@ ControlResult computed_muscle_control(const MusculoskeletalSystem& system, const
     if (spline) pose.q(c) = spline->evaluate(options.begin).value;
   }
   ControlResult result = Controller(system, motion, options).run(pose, progress);
-  if (result.trajectory.end == SimulationEnd::kInterrupted) return result;
+  if (result.trajectory.end == MotionEnd::kInterrupted) return result;
   // The result is the replay of what was found: what a forward simulation of the same controls gives.
   Progress quiet;
   const ForwardOptions forward{
       .begin = options.begin, .end = options.end, .rate_Hz = options.rate_Hz, .accuracy = options.accuracy};
-  const SimulationEnd end = result.trajectory.end;
+  const MotionEnd end = result.trajectory.end;
   const std::string trouble = result.trajectory.trouble;
   result.trajectory = simulate_forward(system, result.start, result.controls, forward, quiet);
-  if (end != SimulationEnd::kCompleted) {
+  if (end != MotionEnd::kCompleted) {
     result.trajectory.end = end;
     result.trajectory.trouble = trouble;
   }

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/index.hpp"
+#include "veridyn/core/rank.hpp"
 #include "veridyn/muscle/dynamics/external_forces.hpp"
 
 namespace veridyn::muscle {
@@ -57,10 +57,7 @@ double distance_from_body(const MusculoskeletalSystem& system, const ExternalLoa
   std::vector<double> pressing;
   for (std::size_t i = 0; i < force.size(); ++i)
     if (force[i] > 0.1 * greatest) pressing.push_back(distance[i]);
-  if (pressing.empty()) return 0.0;
-  const auto middle = pressing.begin() + signed_index(pressing.size() / 2);
-  std::nth_element(pressing.begin(), middle, pressing.end());
-  return *middle;
+  return pressing.empty() ? 0.0 : upper_median(pressing);
 }
 
 double weight_of(const Model& model) {

@@ -162,18 +162,18 @@ void check_start(const Model& model, const StartState& start) {
   }
 }
 
-SimulationEnd end_of(numerics::IntegrationEnd end) {
+MotionEnd end_of(numerics::IntegrationEnd end) {
   switch (end) {
     case numerics::IntegrationEnd::kReached:
-      return SimulationEnd::kCompleted;
+      return MotionEnd::kCompleted;
     case numerics::IntegrationEnd::kStepLimit:
-      return SimulationEnd::kStepLimit;
+      return MotionEnd::kStepLimit;
     case numerics::IntegrationEnd::kStepSize:
-      return SimulationEnd::kStepSize;
+      return MotionEnd::kStepSize;
     case numerics::IntegrationEnd::kNotFinite:
       break;
   }
-  return SimulationEnd::kDiverged;
+  return MotionEnd::kDiverged;
 }
 
 }  // namespace
@@ -194,21 +194,15 @@ std::string event_text(MuscleEvent::Kind kind) {
 
 std::string MuscleTrajectory::message() const {
   switch (end) {
-    case SimulationEnd::kCompleted:
+    case MotionEnd::kCompleted:
       return fmt::format("simulated to {:.6g} s", end_time);
-    case SimulationEnd::kDiverged:
+    case MotionEnd::kDiverged:
       return fmt::format("the simulation diverged at {:.6g} s: {}", end_time, trouble);
-    case SimulationEnd::kStepSize:
+    case MotionEnd::kStepSize:
       return fmt::format("no step is small enough at {:.6g} s: {}", end_time, trouble);
-    case SimulationEnd::kStepLimit:
+    case MotionEnd::kStepLimit:
       return fmt::format("the limit of {} steps was reached at {:.6g} s: {}", steps, end_time, trouble);
-    case SimulationEnd::kInterrupted:
-    case SimulationEnd::kNoTrim:  // this and the following: of aircraft and vehicles
-    case SimulationEnd::kGround:
-    case SimulationEnd::kUpset:
-    case SimulationEnd::kStopped:
-    case SimulationEnd::kSpun:
-    case SimulationEnd::kRolledOver:
+    case MotionEnd::kInterrupted:
       break;
   }
   return fmt::format("interrupted at {:.6g} s", end_time);
@@ -265,7 +259,7 @@ MuscleTrajectory simulate_forward(const MusculoskeletalSystem& system, const Sta
   const numerics::StepControl control{
       .tolerance = options.accuracy, .smallest_step = 1e-12 * span, .max_steps = options.max_steps};
   constexpr double kFarAway = 1e4;
-  SimulationEnd stopped = SimulationEnd::kCompleted;
+  MotionEnd stopped = MotionEnd::kCompleted;
   double shown = options.begin;
   double t = options.begin;
   SystemStepper stepper(system, control);
@@ -273,13 +267,13 @@ MuscleTrajectory simulate_forward(const MusculoskeletalSystem& system, const Sta
       integrate_driven(evaluator, signals, stepper, t, x.data(), options.end, [&](double from, double to) {
         recorder.step(stepper, evaluator, signals, from, to);
         for (std::size_t i = 0; i < layout.free; ++i) {
-          if (std::abs(evaluator.q()[system.reduction().free()[i]]) > kFarAway) stopped = SimulationEnd::kDiverged;
+          if (std::abs(evaluator.q()[system.reduction().free()[i]]) > kFarAway) stopped = MotionEnd::kDiverged;
         }
         if (to - shown > 0.01 * span) {
           shown = to;
-          if (!progress.update((to - options.begin) / span)) stopped = SimulationEnd::kInterrupted;
+          if (!progress.update((to - options.begin) / span)) stopped = MotionEnd::kInterrupted;
         }
-        return stopped == SimulationEnd::kCompleted;
+        return stopped == MotionEnd::kCompleted;
       });
   MuscleTrajectory result = recorder.finish();
   result.end = end == numerics::IntegrationEnd::kReached ? stopped : end_of(end);

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "veridyn/core/progress.hpp"
-#include "veridyn/core/simulation_end.hpp"
 #include "veridyn/estimation/regression/regression_data.hpp"
 #include "veridyn/muscle/model/external_load.hpp"
 #include "veridyn/muscle/model/signals.hpp"
@@ -46,6 +45,15 @@ struct MuscleEvent {
 /// What happened, for tables: "tendon goes slack".
 [[nodiscard]] std::string event_text(MuscleEvent::Kind kind);
 
+/// Why a simulated motion ended.
+enum class MotionEnd {
+  kCompleted,    ///< simulated to the end
+  kInterrupted,  ///< the caller's progress asked to stop
+  kDiverged,     ///< the state became NaN or infinite, or left every sensible range
+  kStepSize,     ///< no step is small enough: a limit of the model
+  kStepLimit,    ///< the largest number of steps is used up
+};
+
 /// A motion with its muscles, a row a sample. Matrices are samples x coordinates or samples x muscles.
 struct MuscleTrajectory {
   std::vector<double> time;  ///< [s]
@@ -56,7 +64,7 @@ struct MuscleTrajectory {
   estimation::RowMatrix path_length;   ///< [m]
   estimation::RowMatrix reserve;       ///< extra generalised forces, samples x coordinates [N m or N]
   std::vector<MuscleEvent> events;
-  SimulationEnd end = SimulationEnd::kCompleted;
+  MotionEnd end = MotionEnd::kCompleted;
   double end_time = 0.0;
   long steps = 0;
   long evaluations = 0;
@@ -64,7 +72,7 @@ struct MuscleTrajectory {
   Eigen::VectorXd final_state;
   Assembly assembly;  ///< of the start, with its loops closed
 
-  [[nodiscard]] bool usable() const { return end == SimulationEnd::kCompleted; }
+  [[nodiscard]] bool usable() const { return end == MotionEnd::kCompleted; }
   /// How it ended, and when.
   [[nodiscard]] std::string message() const;
 };

@@ -89,7 +89,7 @@ MuscleResult result_of(const MuscleStudy& study, MotionAnalysis&& analysis) {
   t.qdot = std::move(analysis.qdot);
   t.path_length = std::move(analysis.path_length);
   t.end_time = t.time.back();
-  if (analysis.interrupted) t.end = SimulationEnd::kInterrupted;
+  if (analysis.interrupted) t.end = MotionEnd::kInterrupted;
   result.desired = t.q;
   result.generalized_force = std::move(analysis.moment);
   return result;

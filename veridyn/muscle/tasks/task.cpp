@@ -8,6 +8,7 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/core/quiet_progress.hpp"
 #include "veridyn/muscle/simulation/motion_analysis.hpp"
 #include "veridyn/muscle/simulation/system_evaluator.hpp"
 #include "veridyn/numerics/parallel.hpp"
@@ -65,18 +66,6 @@ double share_of_reserves(const MusculoskeletalSystem& system, const MuscleTrajec
   return share;
 }
 
-/// View of a progress within a task: it is interrupted with it and shows nothing.
-class Silent : public Progress {
- public:
-  explicit Silent(const Progress& outer) : outer_(outer) {}
-  [[nodiscard]] bool update(double) override { return !outer_.interrupted(); }
-  [[nodiscard]] bool interrupted() const override { return outer_.interrupted(); }
-  [[nodiscard]] int threads() const override { return 1; }
-
- private:
-  const Progress& outer_;
-};
-
 void add_controls(PreparedTask& prepared, const Progress& progress) {
   const Task& task = prepared.task;
   const MusculoskeletalSystem& system = *prepared.system;
@@ -89,7 +78,7 @@ void add_controls(PreparedTask& prepared, const Progress& progress) {
   options.begin = task.begin;
   options.end = task.end;
   options.rate_Hz = task.rate_Hz;
-  Silent silent(progress);
+  QuietProgress silent(progress);
   ControlResult found = computed_muscle_control(system, task.desired, options, silent);
   if (!found.usable()) {
     prepared.trouble = fmt::format("the standard model cannot follow it: {}", found.trajectory.message());

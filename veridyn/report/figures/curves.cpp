@@ -6,6 +6,7 @@
 
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/rank.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::report {
@@ -17,9 +18,7 @@ constexpr double kGapSpacings = 10.0;
 double median_spacing(std::span<const double> time) {
   std::vector<double> steps;
   for (std::size_t k = 1; k < time.size(); ++k) steps.push_back(time[k] - time[k - 1]);
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return upper_median(steps);
 }
 
 }  // namespace

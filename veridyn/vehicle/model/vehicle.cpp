@@ -9,6 +9,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/text.hpp"
 #include "veridyn/estimation/judgement/subject_grades.hpp"
 #include "veridyn/vehicle/model/builtin_vehicles.hpp"
 #include "veridyn/vehicle/model/suspension_study.hpp"
@@ -325,13 +326,9 @@ std::array<double, 2> cornering_stiffnesses(const Vehicle& vehicle, double gravi
 
 std::string write_vehicle_toml(const Vehicle& vehicle) {
   std::string text = "[subject]\nkind = \"vehicle\"\n";
-  const auto quoted = [](const std::string& s) {
-    std::string out = "\"";
-    for (const char c : s) {
-      if (c == '"' || c == '\\') out += '\\';
-      out += c == '\n' ? ' ' : c;
-    }
-    return out + "\"";
+  const auto quoted = [](std::string on_one_line) {
+    std::ranges::replace(on_one_line, '\n', ' ');
+    return toml_text(on_one_line);
   };
   text += "name = " + quoted(vehicle.name) + "\n";
   if (!vehicle.description.empty()) text += "description = " + quoted(vehicle.description) + "\n";

@@ -4,28 +4,27 @@
 
 namespace veridyn::vehicle {
 
-std::string_view to_string(SimulationEnd end) {
+std::string_view to_string(DriveEnd end) {
   switch (end) {
-    case SimulationEnd::kCompleted:
+    case DriveEnd::kCompleted:
       return "driven to the end";
-    case SimulationEnd::kStopped:
+    case DriveEnd::kStopped:
       return "the vehicle came to a stop";
-    case SimulationEnd::kSpun:
+    case DriveEnd::kSpun:
       return "the vehicle spun: it goes backwards";
-    case SimulationEnd::kRolledOver:
+    case DriveEnd::kRolledOver:
       return "the vehicle rolls or pitches beyond 45 deg: the model ends there";
-    case SimulationEnd::kInterrupted:
+    case DriveEnd::kInterrupted:
       return "interrupted";
-    case SimulationEnd::kDiverged:
+    case DriveEnd::kDiverged:
       return "the simulation diverged: the step is too long for these stiffnesses";
-    default:
-      return "";
   }
+  return "";
 }
 
 std::string VehicleTrajectory::message() const {
-  std::string text = end == SimulationEnd::kCompleted ? std::string(to_string(end))
-                                                      : fmt::format("{} (at {:.3f} s)", to_string(end), end_time);
+  std::string text = end == DriveEnd::kCompleted ? std::string(to_string(end))
+                                                 : fmt::format("{} (at {:.3f} s)", to_string(end), end_time);
   for (std::size_t i = 0; i < lift_offs.size(); ++i) {
     if (i == 8) return text + fmt::format("; {} more", lift_offs.size() - i);
     const LiftOff& l = lift_offs[i];

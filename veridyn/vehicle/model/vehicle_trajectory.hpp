@@ -4,13 +4,21 @@
 #include <string_view>
 #include <vector>
 
-#include "veridyn/core/simulation_end.hpp"
 #include "veridyn/vehicle/tyre/wheels.hpp"
 
 namespace veridyn::vehicle {
 
-/// What the end of a drive is called in messages; empty for ends that drives do not have.
-[[nodiscard]] std::string_view to_string(SimulationEnd end);
+/// Why a simulated drive ended.
+enum class DriveEnd {
+  kCompleted,    ///< driven to the end
+  kInterrupted,  ///< the caller's progress asked to stop
+  kDiverged,     ///< the state became NaN or infinite: the step is too long for these stiffnesses
+  kStopped,      ///< forward speed fell below 0.5 m/s, where slip angles lose their meaning
+  kSpun,         ///< slip angle at the centre of gravity beyond 90 deg, it goes backwards
+  kRolledOver,   ///< roll or pitch beyond 45 deg, where small angles are over
+};
+/// What the end of a drive is called in messages.
+[[nodiscard]] std::string_view to_string(DriveEnd end);
 
 /// A wheel that left the ground.
 struct LiftOff {
@@ -21,7 +29,7 @@ struct LiftOff {
 /// The motion of a vehicle over time, a value a sample. Quantities that a model does not have are empty (the bicycle
 /// has no vertical motion; its tyres of one axle carry equal forces). Axes ISO 8855.
 struct VehicleTrajectory {
-  SimulationEnd end = SimulationEnd::kCompleted;
+  DriveEnd end = DriveEnd::kCompleted;
   double end_time = 0.0;
   std::vector<LiftOff> lift_offs;
 
@@ -52,7 +60,7 @@ struct VehicleTrajectory {
 
   [[nodiscard]] std::size_t size() const { return time.size(); }
   /// Whether the rows up to `end_time` mean something.
-  [[nodiscard]] bool usable() const { return end != SimulationEnd::kInterrupted && end != SimulationEnd::kDiverged; }
+  [[nodiscard]] bool usable() const { return end != DriveEnd::kInterrupted && end != DriveEnd::kDiverged; }
   /// One sentence: how it ended, and which wheels left the ground.
   [[nodiscard]] std::string message() const;
 };

@@ -9,6 +9,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/deg_per_g.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/numerics/moments.hpp"
 #include "veridyn/vehicle/simulation/steady_turn.hpp"
 
 namespace veridyn::vehicle {
@@ -18,12 +19,7 @@ constexpr double kNone = kNaN;
 using Series = std::span<const double>;
 
 /// Mean over the last fifth of the drive.
-double final_mean(Series x) {
-  const std::size_t from = x.size() - std::max<std::size_t>(x.size() / 5, 1);
-  double sum = 0.0;
-  for (std::size_t i = from; i < x.size(); ++i) sum += x[i];
-  return sum / static_cast<double>(x.size() - from);
-}
+double final_mean(Series x) { return numerics::mean(x.last(std::max<std::size_t>(x.size() / 5, 1))); }
 
 /// When x first rises through `level` (both times the sign of level), from sample `from` on; NaN when it does not.
 double crossing(Series time, Series x, double level, std::size_t from = 0) {
@@ -313,14 +309,14 @@ std::vector<Metric> manoeuvre_metrics(const VehicleTrajectory& t, const Manoeuvr
   std::vector<Metric> list;
   switch (manoeuvre.kind) {
     case ManoeuvreKind::kStepSteer:
-      if (t.end == SimulationEnd::kCompleted) list = step_steer_metrics(t);
+      if (t.end == DriveEnd::kCompleted) list = step_steer_metrics(t);
       break;
     case ManoeuvreKind::kSineWithDwell:
       list = sine_with_dwell_metrics(t);
       break;
     case ManoeuvreKind::kSweep:
     case ManoeuvreKind::kRandomSteer:
-      if (t.end == SimulationEnd::kCompleted && t.size() >= 64) {
+      if (t.end == DriveEnd::kCompleted && t.size() >= 64) {
         // No higher than the samples allow, and nothing from a drive too short for the band.
         const double duration = t.time.back() - t.time.front();
         const double high = std::min(manoeuvre.end_frequency, 0.5 * static_cast<double>(t.size() - 1) / duration);

@@ -4,17 +4,12 @@
 #include <numbers>
 #include <unsupported/Eigen/FFT>
 
+#include "veridyn/numerics/moments.hpp"
 #include "veridyn/numerics/statistics.hpp"
 #include "veridyn/vehicle/simulation/manoeuvre_metrics.hpp"
 
 namespace veridyn::vehicle {
 namespace {
-
-double mean(std::span<const double> x) {
-  double sum = 0.0;
-  for (const double value : x) sum += value;
-  return sum / static_cast<double>(x.size());
-}
 
 /// Central differences, one-sided at the ends.
 std::vector<double> derivative(std::span<const double> x, double step) {
@@ -73,7 +68,7 @@ std::vector<Metric> ride_metrics(const VehicleTrajectory& t) {
       travel = std::max(travel, numerics::rms(t.suspension_travel[wheel]));
     if (t.Fz[wheel].size() != t.size()) continue;
     std::vector<double> change = t.Fz[wheel];
-    const double middle = mean(change);
+    const double middle = numerics::mean(change);
     for (double& value : change) value -= middle;
     if (middle > 0.0) load = std::max(load, numerics::rms(change) / middle);
   }

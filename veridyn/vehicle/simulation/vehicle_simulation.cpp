@@ -156,17 +156,17 @@ void LiftOffs::end(double time, std::vector<LiftOff>& found) const {
   }
 }
 
-SimulationEnd ended(const FourWheelState<double>& s, bool speed_varies) {
+DriveEnd ended(const FourWheelState<double>& s, bool speed_varies) {
   constexpr double kStandstill = 0.5;
   constexpr double kOver = 45.0 * kDegree;
   // A sum is finite where its terms are; far cheaper than asking each.
-  if (!(std::abs(s.sum()) < kInfinity)) return SimulationEnd::kDiverged;
-  if (std::abs(s(kRoll)) > kOver || std::abs(s(kPitch)) > kOver) return SimulationEnd::kRolledOver;
+  if (!(std::abs(s.sum()) < kInfinity)) return DriveEnd::kDiverged;
+  if (std::abs(s(kRoll)) > kOver || std::abs(s(kPitch)) > kOver) return DriveEnd::kRolledOver;
   if (speed_varies && s(kU) < kStandstill) {
-    if (std::abs(s(kV)) < kStandstill) return SimulationEnd::kStopped;
-    if (s(kU) < 0.0) return SimulationEnd::kSpun;
+    if (std::abs(s(kV)) < kStandstill) return DriveEnd::kStopped;
+    if (s(kU) < 0.0) return DriveEnd::kSpun;
   }
-  return SimulationEnd::kCompleted;
+  return DriveEnd::kCompleted;
 }
 
 }  // namespace internal

@@ -235,7 +235,7 @@ void advance(const FourWheelModel<double, Tyre>& model, const Heights& heights, 
 }
 
 /// Whether the vehicle's motion ends here, and how; kCompleted: it goes on.
-[[nodiscard]] SimulationEnd ended(const FourWheelState<double>& state, bool speed_varies);
+[[nodiscard]] DriveEnd ended(const FourWheelState<double>& state, bool speed_varies);
 
 }  // namespace internal
 
@@ -273,13 +273,13 @@ VehicleTrajectory simulate(const FourWheelModel<double, Tyre>& start, Driver& dr
     lift_offs.see(begin, rates.Fz, out.lift_offs);
     out.end_time = begin;
     out.end = internal::ended(state, spins);
-    const bool last = k == plan.steps || out.end != SimulationEnd::kCompleted;
-    if (out.end != SimulationEnd::kDiverged && (last || plan.sampled(k))) {
+    const bool last = k == plan.steps || out.end != DriveEnd::kCompleted;
+    if (out.end != DriveEnd::kDiverged && (last || plan.sampled(k))) {
       internal::record(out, begin, state, now, rates, under, spins);
     }
     if (last) break;
     if (!internal::report_progress(progress, k, plan)) {
-      out.end = SimulationEnd::kInterrupted;
+      out.end = DriveEnd::kInterrupted;
       break;
     }
 
@@ -332,9 +332,9 @@ VehicleTrajectory simulate(const BicycleModel<double, Tyre>& start, Driver& driv
     BicycleRates<double> rates, unused;
     const State k1 = derivative(state, steer, rates);
     out.end_time = begin;
-    out.end = state.allFinite() ? SimulationEnd::kCompleted : SimulationEnd::kDiverged;
-    const bool last = k == plan.steps || out.end != SimulationEnd::kCompleted;
-    if (out.end != SimulationEnd::kDiverged && (last || plan.sampled(k))) {
+    out.end = state.allFinite() ? DriveEnd::kCompleted : DriveEnd::kDiverged;
+    const bool last = k == plan.steps || out.end != DriveEnd::kCompleted;
+    if (out.end != DriveEnd::kDiverged && (last || plan.sampled(k))) {
       internal::record_plane(out, begin, state, steer);
       out.yaw_acceleration.push_back(rates.dr);
       out.longitudinal_acceleration.push_back(-state(kR) * state(kV));
@@ -348,7 +348,7 @@ VehicleTrajectory simulate(const BicycleModel<double, Tyre>& start, Driver& driv
     }
     if (last) break;
     if (!internal::report_progress(progress, k, plan)) {
-      out.end = SimulationEnd::kInterrupted;
+      out.end = DriveEnd::kInterrupted;
       break;
     }
     const double middle = internal::controls_at(driver, begin + 0.5 * step, false).steer;

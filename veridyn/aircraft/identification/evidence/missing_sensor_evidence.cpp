@@ -8,6 +8,7 @@
 #include <span>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/numerics/moments.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -17,26 +18,18 @@ using estimation::Outcome;
 using estimation::Purpose;
 
 /// Mean, spread and root mean square of a channel over spans; nothing where it has no sample there.
-struct Moments {
-  double mean = 0.0, sd = 0.0, rms = 0.0;
-};
-
-std::optional<Moments> moments_of(const Recording& recording, const std::string& name,
-                                  std::span<const TimeSpan> spans) {
+std::optional<numerics::Moments> moments_of(const Recording& recording, const std::string& name,
+                                            std::span<const TimeSpan> spans) {
   const Channel* channel = recording.find(name);
   if (channel == nullptr) return std::nullopt;
-  double count = 0.0, sum = 0.0, squares = 0.0;
+  numerics::Moments moments;
   for (std::size_t k = 0; k < channel->size(); ++k) {
     const double v = channel->value[k];
     if (!std::isfinite(v)) continue;
     if (std::ranges::none_of(spans, [&](const TimeSpan& span) { return span.contains(channel->times()[k]); })) continue;
-    count += 1.0;
-    sum += v;
-    squares += v * v;
+    moments.add(v);
   }
-  if (count == 0.0) return std::nullopt;
-  const double mean = sum / count;
-  return Moments{mean, std::sqrt(std::max(0.0, squares / count - mean * mean)), std::sqrt(squares / count)};
+  return moments.count > 0.0 ? std::optional(moments) : std::nullopt;
 }
 
 bool has_airspeed(const Recording& recording) { return recording.has("airspeed") || recording.has("dynamic_pressure"); }
@@ -70,9 +63,9 @@ std::optional<FlightEvidence> airspeed_row(const Reconstruction& reconstruction,
   const Recording& r = reconstruction.smoothed;
   const auto speed = moments_of(r, "airspeed", segments.airborne);
   const auto sigma = moments_of(r, "sigma_airspeed", segments.airborne);
-  if (!speed || !sigma || !(speed->mean > 0.0)) return std::nullopt;
+  if (!speed || !sigma || !(speed->mean() > 0.0)) return std::nullopt;
   // Gusts with it: in gusts that no sensor feels the slow wind is found worse than the filter says.
-  const double along = sigma->rms / speed->mean;
+  const double along = sigma->rms() / speed->mean();
   return FlightEvidence{
       {.name = "no airspeed sensor",
        .about = "airspeed",
@@ -102,15 +95,15 @@ std::optional<FlightEvidence> vane_row(const Reconstruction& reconstruction, con
   const auto angle = moments_of(r, name, excited);
   const auto sigma = moments_of(r, "sigma_" + name, excited);
   const auto speed = moments_of(r, "airspeed", segments.airborne);
-  if (!angle || !sigma || !speed || !(angle->sd > 0.0)) return std::nullopt;
+  if (!angle || !sigma || !speed || !(angle->sd() > 0.0)) return std::nullopt;
   // The wind across the path is in doubt for long, gusts are not.
   const auto down = moments_of(r, "sigma_wind_down", segments.airborne);
   const auto north = moments_of(r, "sigma_wind_north", segments.airborne);
   const auto east = moments_of(r, "sigma_wind_east", segments.airborne);
-  const double across = alpha           ? (down ? down->rms : 0.0)
-                        : north && east ? std::sqrt(0.5 * (north->rms * north->rms + east->rms * east->rms))
+  const double across = alpha           ? (down ? down->rms() : 0.0)
+                        : north && east ? std::sqrt(0.5 * (north->rms() * north->rms() + east->rms() * east->rms()))
                                         : 0.0;
-  const double ratio = std::pow(sigma->rms / angle->sd, 2.0);
+  const double ratio = std::pow(sigma->rms() / angle->sd(), 2.0);
   Evidence row{.name = fmt::format("no {} vane", name),
                .about = name,
                .outcome = ratio > kFailed ? Outcome::kFailed
@@ -122,7 +115,7 @@ std::optional<FlightEvidence> vane_row(const Reconstruction& reconstruction, con
                .bears_on = Purpose::kParameters};
   row.text = fmt::format(
       "no vane measures {}: gusts leave it in doubt by {:.2f} deg, where manoeuvres move it by {:.2f} deg{}", name,
-      sigma->rms / kDegree, angle->sd / kDegree,
+      sigma->rms() / kDegree, angle->sd() / kDegree,
       row.outcome == Outcome::kNotVerified
           ? ""
           : "; the aircraft answers gusts that no sensor feels, which biases its derivatives unseen");
@@ -133,7 +126,7 @@ std::optional<FlightEvidence> vane_row(const Reconstruction& reconstruction, con
   return FlightEvidence{std::move(row), alpha ? by_alpha() : by_beta(),
                         SignalDoubt{.signal = alpha ? FlightSignal::kAlpha : FlightSignal::kBeta,
                                     .scale = ratio,
-                                    .zero = across / std::max(1.0, speed->mean),
+                                    .zero = across / std::max(1.0, speed->mean()),
                                     .in_interval = true}};
 }
 
@@ -142,16 +135,16 @@ std::optional<FlightEvidence> noise_row(const Reconstruction& reconstruction, co
   constexpr double kCare = 0.015;
   const auto speed = moments_of(reconstruction.smoothed, "airspeed", segments.airborne);
   const auto sigma = moments_of(reconstruction.smoothed, "sigma_airspeed", segments.airborne);
-  if (!speed || !sigma || !(sigma->rms > kCare * speed->mean)) return std::nullopt;
+  if (!speed || !sigma || !(sigma->rms() > kCare * speed->mean())) return std::nullopt;
   return FlightEvidence{{.name = "noise of the airspeed",
                          .about = "airspeed",
                          .outcome = Outcome::kCare,
-                         .value = sigma->rms / speed->mean,
+                         .value = sigma->rms() / speed->mean(),
                          .limit = kCare,
                          .scale = "noise over airspeed",
                          .text = fmt::format("no filter averages the airspeed, whose noise is {:.1f} % of it: constant "
                                              "terms, of drag above all, may be wrong by more than their intervals say",
-                                             100.0 * sigma->rms / speed->mean),
+                                             100.0 * sigma->rms() / speed->mean()),
                          .bears_on = Purpose::kParameters,
                          .advice = "let a filter reconstruct the motion (reconstruct.filter = \"model-free\")"}};
 }

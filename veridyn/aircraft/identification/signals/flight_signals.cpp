@@ -161,14 +161,7 @@ std::array<GridSignal, 3> force_at_centre_of_gravity(const InertialSignals& at_s
 double typical_sigma(const Recording& smoothed, const std::string& name) {
   const Channel* sigma = smoothed.find(name);
   if (sigma == nullptr) return 0.0;
-  double sum = 0.0;
-  std::size_t count = 0;
-  for (const double s : sigma->value) {
-    if (!std::isfinite(s)) continue;
-    sum += s * s;
-    ++count;
-  }
-  return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0.0;
+  return numerics::rms(sigma->value);
 }
 
 /// A flow angle and what was assumed of it.

@@ -1,11 +1,11 @@
-#include "veridyn/live/link/bytes.hpp"
+#include "veridyn/core/bytes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <limits>
 
-namespace veridyn::live {
+namespace veridyn {
 namespace {
 
 // Examples of the formats: IEEE 754 single 1.0 is 0x3f800000, double -2.0 is 0xc000000000000000.
@@ -37,5 +37,32 @@ TEST(Bytes, AreReadBackWhateverTheirNumber) {
   check(std::uint16_t{0xfffe});
 }
 
+TEST(Bytes, AreLoadedFromAnywhereInEitherOrder) {
+  const char bytes[] = {9, 4, 3, 2, 1, 0, 0, static_cast<char>(0x80), 0x3f};
+  EXPECT_EQ(load_number<std::uint32_t>(bytes + 1), 0x01020304U);
+  EXPECT_EQ(load_number<std::uint32_t>(bytes + 1, true), 0x04030201U);
+  EXPECT_EQ(load_number<float>(bytes + 5), 1.0F);
+}
+
+TEST(ByteReader, GoesFromFrontToBack) {
+  ByteReader reader(std::string_view("\x02\0abc\x01\xff", 7));
+  EXPECT_EQ(reader.text<std::uint16_t>(), "ab");
+  EXPECT_EQ(reader.bytes(1), "c");
+  EXPECT_FALSE(reader.ended());
+  EXPECT_EQ(reader.number<std::int16_t>(), -255);
+  EXPECT_TRUE(reader.ended());
+  EXPECT_FALSE(reader.failed());
+}
+
+TEST(ByteReader, ReadsNothingPastTheEnd) {
+  ByteReader number("abc");
+  EXPECT_EQ(number.number<std::uint32_t>(), 0U);
+  EXPECT_TRUE(number.failed());
+  EXPECT_EQ(number.number<std::uint8_t>(), 0U) << "nor what would still fit";
+  ByteReader run("abc");
+  EXPECT_EQ(run.bytes(UINT64_MAX), "abc") << "what is left";
+  EXPECT_TRUE(run.failed());
+}
+
 }  // namespace
-}  // namespace veridyn::live
+}  // namespace veridyn

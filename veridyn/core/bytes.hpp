@@ -1,13 +1,16 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <string_view>
 #include <type_traits>
 
-namespace veridyn::live {
+namespace veridyn {
 
 namespace internal {
 /// The unsigned integer that holds the bits of a number, of an enumeration its number's.
@@ -53,4 +56,54 @@ template <typename T>
   return number_at<T>(std::span<const char>(bytes), offset);
 }
 
-}  // namespace veridyn::live
+/// The number that lies at `from`, aligned or not, as this machine stores numbers, or with its bytes in the opposite
+/// order.
+template <typename T>
+requires std::is_arithmetic_v<T>
+[[nodiscard]] T load_number(const char* from, bool swapped = false) {
+  std::array<char, sizeof(T)> bytes;
+  std::memcpy(bytes.data(), from, sizeof(T));
+  if (swapped) std::ranges::reverse(bytes);
+  return std::bit_cast<T>(bytes);
+}
+
+/// Reads numbers (least significant byte first) and runs of bytes one after the other. Nothing is read past the end:
+/// a number is then zero, a run what is left, and `failed()` says so from there on.
+class ByteReader {
+ public:
+  explicit ByteReader(std::string_view bytes) : rest_(bytes) {}
+
+  template <typename T>
+  T number() {
+    if (rest_.size() < sizeof(T)) {
+      failed_ = true;
+      rest_ = {};
+      return T{};
+    }
+    const T value = number_at<T>(rest_, 0);
+    rest_.remove_prefix(sizeof(T));
+    return value;
+  }
+  std::string_view bytes(std::uint64_t size) {
+    if (size > rest_.size()) {
+      failed_ = true;
+      size = rest_.size();
+    }
+    const std::string_view part = rest_.substr(0, size);
+    rest_.remove_prefix(size);
+    return part;
+  }
+  /// With its length before it.
+  template <typename Length>
+  std::string_view text() {
+    return bytes(number<Length>());
+  }
+  [[nodiscard]] bool ended() const { return rest_.empty(); }
+  [[nodiscard]] bool failed() const { return failed_; }
+
+ private:
+  std::string_view rest_;
+  bool failed_ = false;
+};
+
+}  // namespace veridyn
