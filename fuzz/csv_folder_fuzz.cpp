@@ -31,7 +31,7 @@ extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t siz
       std::ofstream(folder / name, std::ios::binary) << rest.substr(0, end);
     rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
   }
-  return veridyn::fuzz::one_input(data, size, [&](std::string_view) {
+  return veridyn::fuzz::one_input({reinterpret_cast<const char*>(data), size}, [&](std::string_view) {
     veridyn::io::Log log = veridyn::io::read_csv_folder(folder, options);
     veridyn::io::choose_part(log, options.part);
     return log;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <string_view>
 
 #include "veridyn/core/assert.hpp"
@@ -11,10 +10,10 @@ namespace veridyn::fuzz {
 
 /// Reads the bytes and checks what must hold of every log; an InputError is a proper answer.
 template <typename Read>
-int one_input(const unsigned char* data, std::size_t size, Read read) {
+int one_input(std::string_view bytes, Read read) {
   try {
-    const io::Log log = read(std::string_view(reinterpret_cast<const char*>(data), size));
-    VERIDYN_ASSERT(log.damage.bytes_lost <= size);
+    const io::Log log = read(bytes);
+    VERIDYN_ASSERT(log.damage.bytes_lost <= bytes.size());
     for (const io::LogTopic& topic : log.topics) {
       if (!topic.time) continue;
       for (std::size_t i = 1; i < topic.size(); ++i) VERIDYN_ASSERT((*topic.time)[i - 1] <= (*topic.time)[i]);

@@ -17,7 +17,6 @@ extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t siz
   if (decoder.decode(bytes.substr(0, decoder.layout().size), values) && decoder.is_plausible(values))
     VERIDYN_ASSERT(std::isfinite(decoder.motion(values).time) || !decoder.layout().has("time"));
   (void)veridyn::io::packets_in(bytes);
-  return veridyn::fuzz::one_input(data + 1, size - 1, [&](std::string_view packets) {
-    return veridyn::io::packet_log(decoder.layout(), packets, "fuzz");
-  });
+  return veridyn::fuzz::one_input(
+      bytes, [&](std::string_view packets) { return veridyn::io::packet_log(decoder.layout(), packets, "fuzz"); });
 }

@@ -7,6 +7,7 @@
 #include "apps/veridyn/inspect_model.hpp"
 #include "veridyn/aircraft/sensors/channel_map.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/io/log_formats.hpp"
 #include "veridyn/io/read.hpp"
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/recording/drive_axis_check.hpp"
@@ -218,11 +219,11 @@ Command inspect_command() {
       .summary = "what a log or a model file holds: channels, rates, gaps, damage; bodies, joints, muscles",
       .arguments =
           {{.name = "FILE",
-            .help = "a study whose [data] names a drive; ArduPilot .bin or .log, PX4 .ulg, MCAP and ROS 2 bags, MATLAB "
-                    ".mat, OpenSim .sto "
-                    "or .mot, CSV, a folder of NumPy "
-                    "arrays; OpenSim model .osim, or the built-in model 'arm'; a folder of .osim models "
-                    "gives a table: loads, simulates, what is missing",
+            .help =
+                fmt::format("a study whose [data] names a drive; a log: {}, or a folder of CSV; OpenSim model .osim, "
+                            "or the built-in model 'arm'; a folder of .osim models gives a table: loads, "
+                            "simulates, what is missing",
+                            io::list_of_log_formats()),
             .required = true},
            {.name = "--events", .help = "list flight modes and messages", .value = false},
            {.name = "--parameters", .help = "list the autopilot's parameters", .value = false},

@@ -1,34 +1,31 @@
 // Laws that every reader keeps whatever the bytes are: it ends, it does not crash, what it returns is consistent.
-#include <functional>
+#include <ostream>
 
 #include "tests/io/support.hpp"
-#include "tests/support/ros_writer.hpp"
-#include "tests/support/synthetic_logs.hpp"
-#include "veridyn/io/dataflash/dataflash.hpp"
-#include "veridyn/io/dataflash/dataflash_text.hpp"
-#include "veridyn/io/matlab/mat.hpp"
-#include "veridyn/io/ros/mcap.hpp"
-#include "veridyn/io/tables/csv.hpp"
-#include "veridyn/io/ulog/ulog.hpp"
+#include "tests/support/small_logs.hpp"
+#include "veridyn/io/log_formats.hpp"
+
+namespace veridyn::testing {
+
+void PrintTo(const SmallLog& log, std::ostream* out) { *out << log.key; }
+
+}  // namespace veridyn::testing
 
 namespace veridyn::io {
 namespace {
 
-struct Reader {
-  const char* name;
-  std::string (*sample)();
-  std::function<Log(std::string_view)> read;
-  bool counts_what_it_loses;  ///< CSV refuses instead
-};
+const LogFormat& format_with(std::string_view key) {
+  for (const LogFormat& format : log_formats())
+    if (format.key == key) return format;
+  throw InputError(std::string(key), "is no format of logs");
+}
 
-void PrintTo(const Reader& reader, std::ostream* out) { *out << reader.name; }
-
-class EveryReader : public ::testing::TestWithParam<Reader> {
+class EveryReader : public ::testing::TestWithParam<testing::SmallLog> {
  protected:
   /// Whether the bytes were read; false when they were refused with a message.
   static bool read(std::string_view bytes, Log& log) {
     try {
-      log = GetParam().read(bytes);
+      log = format_with(GetParam().key).read(bytes, "x", {});
       return true;
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()), "");
@@ -45,14 +42,14 @@ class EveryReader : public ::testing::TestWithParam<Reader> {
 
 TEST_P(EveryReader, ReadsItsSampleWithoutALoss) {
   Log log;
-  ASSERT_TRUE(read(GetParam().sample(), log));
+  ASSERT_TRUE(read(GetParam().bytes, log));
   EXPECT_GT(rows(log), 2U);
   EXPECT_EQ(log.damage.bytes_lost, 0U);
   EXPECT_EQ(log.damage.records_lost, 0U);
 }
 
 TEST_P(EveryReader, TakesALogThatIsCutAtAnyByte) {
-  const std::string whole = GetParam().sample();
+  const std::string whole = GetParam().bytes;
   Log complete;
   ASSERT_TRUE(read(whole, complete));
   std::size_t most = 0;
@@ -71,7 +68,7 @@ TEST_P(EveryReader, TakesALogThatIsCutAtAnyByte) {
 }
 
 TEST_P(EveryReader, TakesTenThousandLogsWithFlippedBits) {
-  const std::string whole = GetParam().sample();
+  const std::string whole = GetParam().bytes;
   std::size_t damaged = 0;
   for (std::uint64_t seed = 1; seed <= 10000; ++seed) {
     SCOPED_TRACE(seed);
@@ -86,21 +83,19 @@ TEST_P(EveryReader, TakesTenThousandLogsWithFlippedBits) {
     if (HasFatalFailure()) return;
   }
   // Flips inside of numbers cannot be seen; flips of structure must be.
-  EXPECT_GT(damaged, GetParam().counts_what_it_loses ? 300U : 0U);
+  EXPECT_GT(damaged, GetParam().damage == testing::DamageLaw::kCounts ? 300U : 0U);
   RecordProperty("logs_with_a_counted_loss", static_cast<int>(damaged));
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Formats, EveryReader,
-    ::testing::Values(Reader{"DataFlash", testing::small_dataflash,
-                             [](std::string_view b) { return read_dataflash(b, "x"); }, true},
-                      Reader{"DataFlashText", testing::small_dataflash_text,
-                             [](std::string_view b) { return read_dataflash_text(b, "x"); }, true},
-                      Reader{"ULog", testing::small_ulog, [](std::string_view b) { return read_ulog(b, "x"); }, true},
-                      Reader{"Mcap", testing::tiny_mcap, [](std::string_view b) { return read_mcap(b, "x"); }, true},
-                      Reader{"Mat", testing::small_mat, [](std::string_view b) { return read_mat(b, "x"); }, true},
-                      Reader{"Csv", testing::small_csv, [](std::string_view b) { return read_csv(b, "x"); }, true}),
-    [](const auto& instance) { return std::string(instance.param.name); });
+std::vector<testing::SmallLog> logs_with_a_law() {
+  std::vector<testing::SmallLog> logs;
+  for (testing::SmallLog& log : testing::small_logs())
+    if (log.damage != testing::DamageLaw::kOwnTests) logs.push_back(std::move(log));
+  return logs;
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, EveryReader, ::testing::ValuesIn(logs_with_a_law()),
+                         [](const auto& instance) { return std::string(instance.param.key); });
 
 }  // namespace
 }  // namespace veridyn::io

@@ -1,7 +1,7 @@
 #include "veridyn/io/formats_not_read.hpp"
 
 #include "tests/io/support.hpp"
-#include "tests/support/synthetic_logs.hpp"
+#include "tests/support/small_logs.hpp"
 #include "veridyn/io/read.hpp"
 
 namespace veridyn::io {
@@ -28,10 +28,8 @@ TEST(FormatsNotRead, AreNamedWithWhatToDo) {
 }
 
 TEST(FormatsNotRead, AreNoneOfThoseThatAreRead) {
-  for (const std::string& content :
-       {testing::small_dataflash(), testing::small_dataflash_text(), testing::small_ulog(), testing::small_mat(),
-        testing::small_csv(), std::string("date,time,base\n1,2,3\n")})
-    EXPECT_FALSE(format_not_read(content));
+  for (const testing::SmallLog& log : testing::small_logs()) EXPECT_FALSE(format_not_read(log.bytes)) << log.key;
+  EXPECT_FALSE(format_not_read("date,time,base\n1,2,3\n"));
 }
 
 }  // namespace

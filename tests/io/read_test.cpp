@@ -3,6 +3,7 @@
 #include "tests/io/support.hpp"
 #include "tests/support/synthetic_logs.hpp"
 #include "veridyn/io/dataflash/dataflash.hpp"
+#include "veridyn/io/log_formats.hpp"
 
 namespace veridyn::io {
 namespace {
@@ -43,10 +44,8 @@ TEST(ReadLog, RefusesWhatItCannotReadInOneSentence) {
             place + "/empty.bin: the file is empty");
   EXPECT_EQ(message_of([&] { (void)read_log(folder.write("zero.bin", std::string(5000, '\0'))); }),
             place +
-                "/zero.bin: not a known log (its name promises ArduPilot DataFlash, its content is not); known are "
-                "ArduPilot DataFlash (.bin, .log), PX4 ULog (.ulg), MAVLink telemetry (.tlog), MCAP (.mcap), "
-                "ROS 2 bags (.db3, or their folder), MATLAB (.mat), OpenSim storage (.sto, .mot), "
-                "NumPy arrays (.npz, or folders of .npy), telemetry packets of games and CSV");
+                "/zero.bin: not a known log (its name promises ArduPilot DataFlash, its content is not); known are " +
+                list_of_log_formats());
   EXPECT_THAT(
       message_of([&] { (void)read_log(folder.write("picture.png", std::string("\x89PNG\r\n\x1a\n\0\0", 10))); }),
       HasSubstr("not a known log; known are"));

@@ -17,12 +17,10 @@ struct ReadOptions {
   std::optional<PacketLayout> packet;  ///< the file holds such packets, one after the other
 };
 
-/// Reads a log of any known format: ArduPilot DataFlash (.bin) and its text form (.log), PX4 ULog (.ulg), telemetry
-/// logs of MAVLink (.tlog), MCAP (.mcap), bags of ROS 2 (.db3, or their folder), MATLAB (.mat), OpenSim storage (.sto,
-/// .mot), telemetry packets of games, CSV, and folders of CSV or of NumPy arrays
-/// (`npy.hpp`). The content decides; the name's extension only where the content does not decide, and a name that
-/// promises another format than the content is noted in the damage. Where pauses or restarts part it, the parts are
-/// noted, and `csv.part` reads one (`choose_part`).
+/// Reads a log of any known format: files of the formats in `log_formats.hpp`, bags of ROS 2 as folders, and folders of
+/// CSV or of NumPy arrays (`npy.hpp`). The content decides; the name's extension only where the content does not
+/// decide, and a name that promises another format than the content is noted in the damage. Where pauses or restarts
+/// part it, the parts are noted, and `csv.part` reads one (`choose_part`).
 /// @throws InputError when the file is missing, empty, or of no known format.
 [[nodiscard]] Log read_log(const std::filesystem::path& path, const ReadOptions& options = {});
 

@@ -1,7 +1,0 @@
-#include "fuzz/one_input.hpp"
-#include "veridyn/io/opensim/storage.hpp"
-
-extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size) {
-  return veridyn::fuzz::one_input(data, size,
-                                  [](std::string_view bytes) { return veridyn::io::read_storage_log(bytes, "fuzz"); });
-}
