@@ -9,6 +9,7 @@
 #include <set>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/files.hpp"
 #include "veridyn/core/text.hpp"
 
 namespace veridyn::io {
