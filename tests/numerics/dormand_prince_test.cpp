@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "tests/support/integrate_adaptive.hpp"
+
 namespace veridyn::numerics {
 namespace {
 

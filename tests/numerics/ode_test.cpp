@@ -6,7 +6,6 @@ namespace veridyn::numerics {
 namespace {
 
 using Eigen::Vector2d;
-using Eigen::VectorXd;
 
 // x'' = -x + cos(2 t): closed form x = (4/3) cos t - (1/3) cos 2t for x(0) = 1, x'(0) = 0.
 Vector2d forced(double t, const Vector2d& x) { return {x(1), -x(0) + std::cos(2 * t)}; }
@@ -65,48 +64,6 @@ TEST(RungeKutta4, TakesStagesAsTheRateCorrectsThem) {
   };
   runge_kutta_4_in_place<2>(Vector2d(-1.0, 0.0), stopped, 0.3, x);
   EXPECT_NEAR(x(0), 1.0 - 0.05 * (1.0 + 2.0 * 0.95 + 2.0 * 0.95 + 0.95), 1e-15);
-}
-
-TEST(AdaptiveIntegration, KeepsTheToleranceAndReachesTheEndInBothDirections) {
-  const OdeFunction f = [](double t, const VectorXd& x, VectorXd& rate) { rate = forced(t, Vector2d(x)); };
-  double last = 1.0;
-  for (const double tolerance : {1e-6, 1e-8, 1e-10}) {
-    IntegrationOptions options;
-    options.absolute_tolerance = options.relative_tolerance = tolerance;
-    const IntegrationResult r = integrate_adaptive(f, Vector2d(1, 0), 0.0, 20.0, options);
-    ASSERT_TRUE(r.usable()) << r.message();
-    EXPECT_DOUBLE_EQ(r.time, 20.0);
-    const double error = std::abs(r.state(0) - forced_solution(20.0));
-    EXPECT_LT(error, 100 * tolerance);  // global error over about 20 time constants
-    EXPECT_LT(error, last);
-    last = error;
-    const IntegrationResult back = integrate_adaptive(f, r.state, 20.0, 0.0, options);
-    ASSERT_TRUE(back.usable());
-    EXPECT_NEAR(back.state(0), 1.0, 300 * tolerance);
-  }
-}
-
-TEST(AdaptiveIntegration, ReportsASolutionThatDoesNotExistToTheEnd) {
-  // x' = x^2 from 1 is 1 / (1 - t): infinite at t = 1.
-  const OdeFunction f = [](double, const VectorXd& x, VectorXd& rate) { rate = x.array().square(); };
-  IntegrationOptions options;
-  options.max_steps = 20000;
-  const IntegrationResult r = integrate_adaptive(f, VectorXd::Ones(1), 0.0, 2.0, options);
-  EXPECT_FALSE(r.usable());
-  EXPECT_LE(r.time, 1.0 + 1e-9);
-  EXPECT_THAT(r.message(), testing::HasSubstr("stopped at t = 1"));
-}
-
-TEST(AdaptiveIntegration, StopsAtItsStepLimitAndShowsEveryStep) {
-  const OdeFunction f = [](double t, const VectorXd& x, VectorXd& rate) { rate = forced(t, Vector2d(x)); };
-  IntegrationOptions options;
-  options.max_steps = 5;
-  int seen = 0;
-  const IntegrationResult r =
-      integrate_adaptive(f, Vector2d(1, 0), 0.0, 20.0, options, [&](double, const VectorXd&) { ++seen; });
-  EXPECT_EQ(r.end, IntegrationEnd::kStepLimit);
-  EXPECT_LE(seen, 6);
-  EXPECT_GE(seen, 2);
 }
 
 }  // namespace

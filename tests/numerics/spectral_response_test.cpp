@@ -39,14 +39,6 @@ TEST(SpectralResponse, FindsResponseAndCoherenceOfAFilterInNoise) {
   EXPECT_NEAR(coherence2 / static_cast<double>(found.size()), 1.0, 0.4);
 }
 
-// Parseval: the density integrates to the variance.
-TEST(SpectralResponse, TheSpectrumIntegratesToTheVariance) {
-  const std::vector<double> x = white(40000, 3);
-  const std::vector<double> density = power_spectrum(x, 50.0, 200);
-  EXPECT_NEAR(std::accumulate(density.begin(), density.end(), 0.0) * 50.0 / 200.0, 1.0, 0.03);
-  EXPECT_NEAR(density[40], 1.0 / 25.0, 0.2 / 25.0);
-}
-
 TEST(SpectralResponse, RefusesRecordsThatCannotTell) {
   const std::vector<double> x(100, 0.0);
   EXPECT_THROW((void)spectral_response(x, std::vector<double>(99, 0.0), 10.0, 32, 1.0, 4.0), InputError);

@@ -2,6 +2,7 @@
 
 #include "tests/report/sample_document.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/files.hpp"
 #include "veridyn/report/document/html.hpp"
 
 int main(int argc, char** argv) {
@@ -10,7 +11,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    veridyn::report::write_html(veridyn::report::sample_document(), argv[1]);
+    veridyn::write_file(argv[1], veridyn::report::to_html(veridyn::report::sample_document()));
   } catch (const veridyn::InputError& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 2;

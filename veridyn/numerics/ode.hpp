@@ -1,8 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
-#include <string>
 
 namespace veridyn::numerics {
 
@@ -66,34 +64,5 @@ enum class IntegrationEnd {
   kStepSize,   ///< the error stayed too large at a step below 1e-14 of the interval
   kNotFinite,  ///< the state or its derivative became NaN or infinite
 };
-
-/// Accuracy and limits of `integrate_adaptive`.
-struct IntegrationOptions {
-  double absolute_tolerance = 1e-9;  ///< per step and component, in units of the state
-  double relative_tolerance = 1e-9;
-  double first_step = 0.0;  ///< [time]; 0: a thousandth of the interval
-  long max_steps = 1000000;
-};
-
-/// Where an integration ended, and how.
-struct IntegrationResult {
-  Eigen::VectorXd state;  ///< where it ended
-  double time = 0.0;
-  long steps = 0;
-  IntegrationEnd end = IntegrationEnd::kReached;
-  [[nodiscard]] bool usable() const { return end == IntegrationEnd::kReached; }
-  [[nodiscard]] std::string message() const;
-};
-
-/// x' = f(t, x), written into `rate`, which has the size of `x`.
-using OdeFunction = std::function<void(double t, const Eigen::VectorXd& x, Eigen::VectorXd& rate)>;
-
-/// Integrates from `begin` to `end` (either direction) with the fifth-order method of Dormand & Prince (1980), its
-/// step controlled by the embedded fourth-order error estimate (Boost.odeint). `observe(t, x)`, when given, is called
-/// at the start and after each accepted step.
-[[nodiscard]] IntegrationResult integrate_adaptive(
-    const OdeFunction& function, const Eigen::VectorXd& start, double begin, double end,
-    const IntegrationOptions& options = {},
-    const std::function<void(double, const Eigen::VectorXd&)>& observe = nullptr);
 
 }  // namespace veridyn::numerics

@@ -102,17 +102,4 @@ std::vector<ResponseEstimate> spectral_response(std::span<const double> input, s
   return kept;
 }
 
-std::vector<double> power_spectrum(std::span<const double> x, double rate_Hz, std::size_t segment) {
-  require(x, rate_Hz, segment);
-  const auto X = segment_transforms(x, rate_Hz, segment);
-  std::vector<double> density(segment / 2 + 1, 0.0);
-  for (const auto& one : X) {
-    for (std::size_t k = 0; k < density.size(); ++k) density[k] += std::norm(one[k]) / static_cast<double>(X.size());
-  }
-  // The ends stand for one frequency each, not for a pair.
-  density.front() *= 0.5;
-  if (segment % 2 == 0) density.back() *= 0.5;
-  return density;
-}
-
 }  // namespace veridyn::numerics

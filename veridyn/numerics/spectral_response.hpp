@@ -26,7 +26,4 @@ struct ResponseEstimate {
                                                               std::span<const double> output, double rate_Hz,
                                                               std::size_t segment, double low_Hz, double high_Hz);
 
-/// One-sided power spectral density [unit^2/Hz] at k rate/segment, k = 0 .. segment/2, by the same method.
-[[nodiscard]] std::vector<double> power_spectrum(std::span<const double> x, double rate_Hz, std::size_t segment);
-
 }  // namespace veridyn::numerics

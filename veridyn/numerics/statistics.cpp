@@ -160,13 +160,6 @@ WhitenessTest whiteness_test(std::span<const double> residual, std::size_t lags,
   return test;
 }
 
-double effective_sample_size_lag1(std::span<const double> x) {
-  if (x.size() < 3) return static_cast<double>(x.size());
-  const double r1 = autocorrelation(x, 1).value[1];
-  const auto count = static_cast<double>(x.size());
-  return std::clamp(count * (1.0 - r1) / (1.0 + r1), 1.0, count);
-}
-
 double effective_sample_size_variance(std::span<const double> x, std::span<const int> segment) {
   const std::size_t n = x.size();
   if (n < 3) return static_cast<double>(n);

@@ -71,10 +71,6 @@ struct WhitenessTest {
 [[nodiscard]] WhitenessTest whiteness_test(std::span<const double> residual, std::size_t lags = 0,
                                            std::span<const int> segment = {});
 
-/// N (1 - r1)/(1 + r1): number of independent samples with as much information about the mean as N samples of an AR(1)
-/// process with lag-1 autocorrelation r1. Never above N nor below 1.
-[[nodiscard]] double effective_sample_size_lag1(std::span<const double> x);
-
 /// Number of independent samples with as much information about the variance: N / (1 + 2 sum r(k)^2), summed until r
 /// stays inside the white band.
 [[nodiscard]] double effective_sample_size_variance(std::span<const double> x, std::span<const int> segment = {});

@@ -14,7 +14,7 @@ TEST(Perception, IsAtRestAfterReset) {
     Perception perception(m);
     const Perception::Felt rest = perception.reset(kLevel, Eigen::Vector3d::Zero());
     EXPECT_EQ(rest.rate.norm(), 0.0);
-    EXPECT_NEAR(rest.force.z(), -9.80665 * m.otoliths.static_gain(), 1e-12 * rest.force.norm());
+    EXPECT_NEAR(rest.force.z(), -9.80665 * m.otoliths.response(0.0).real(), 1e-12 * rest.force.norm());
     for (int k = 0; k < 200; ++k) {
       const Perception::Felt felt = perception.step(kLevel, Eigen::Vector3d::Zero(), 0.01);
       ASSERT_LT((felt.force - rest.force).norm(), 1e-10 * rest.force.norm()) << m.name;

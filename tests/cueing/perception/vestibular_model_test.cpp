@@ -57,8 +57,8 @@ TEST(VestibularModel, StepResponsesAreSumsOfResidues) {
 
 TEST(VestibularModel, SteadyRotationIsNotFeltAndSteadyForceIs) {
   for (const VestibularModel& m : vestibular_models()) {
-    for (const TransferFunction& canal : m.canals) EXPECT_EQ(canal.static_gain(), 0.0) << m.name;
-    EXPECT_GT(m.otoliths.static_gain(), 0.0) << m.name;
+    for (const TransferFunction& canal : m.canals) EXPECT_EQ(canal.response(0.0).real(), 0.0) << m.name;
+    EXPECT_GT(m.otoliths.response(0.0).real(), 0.0) << m.name;
     EXPECT_FALSE(m.source.empty());
   }
 }
@@ -127,7 +127,7 @@ TEST_F(CueingReference, OrmsbysImpulses) {
     EXPECT_NEAR(impulse_response(m.otoliths, i), force, 1e-7) << i;
     EXPECT_NEAR(impulse_response(m.canals[0], 1e-3 * i) / rate, 1.0, 1e-7) << i;
   }
-  EXPECT_NEAR(m.otoliths.static_gain() * 0.4, ormsby["steady_state_f_0.4_0.5_0.6"][0].get<double>(), 1e-5);
+  EXPECT_NEAR(m.otoliths.response(0.0).real() * 0.4, ormsby["steady_state_f_0.4_0.5_0.6"][0].get<double>(), 1e-5);
 }
 
 }  // namespace

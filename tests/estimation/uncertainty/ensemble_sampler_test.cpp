@@ -7,6 +7,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/numerics/parallel.hpp"
 
 namespace veridyn::estimation {
 namespace {
@@ -23,6 +24,13 @@ class SamplerThreads : public Progress {
  private:
   int count_;
 };
+
+/// Point by point on `threads` threads.
+LogDensities point_by_point(LogDensity density, int threads) {
+  return [density = std::move(density), threads](std::span<const Eigen::VectorXd> points, std::span<double> values) {
+    numerics::parallel_for(points.size(), threads, [&](std::size_t i) { values[i] = density(points[i]); });
+  };
+}
 
 VectorXd mean_of(const EnsembleSample& s) { return s.draws.colwise().mean().transpose(); }
 MatrixXd covariance_of(const EnsembleSample& s) {

@@ -6,6 +6,7 @@
 #include "tests/io/support.hpp"
 #include "tests/support/synthetic_logs.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/files.hpp"
 #include "veridyn/io/dataflash/dataflash.hpp"
 
 namespace veridyn::io {
@@ -83,7 +84,7 @@ TEST(DataFlash, AdvancesByTheLengthOfTheFormatWhereTheColumnsSumToSomethingElse)
 TEST(RealDataFlash, UnitsOfAnOldLogComeFromTheTableOfKnownMessages) {
   const auto path = shared_flight("ardupilot/pymavlink_test.BIN");
   VERIDYN_NEEDS_SHARED(path);
-  const Recording recording = to_recording(read_dataflash_file(path));
+  const Recording recording = to_recording(read_dataflash(read_file(path), path.string()));
   EXPECT_NEAR(recording.at("IMU.GyrX").value.front(), -0.1165708526968956, 1e-12);
   EXPECT_EQ(recording.at("IMU.GyrX").unit.name, "rad/s");
   EXPECT_NEAR(recording.at("ATT.Pitch").value.front(), 2.58 * kDegree, 1e-12);

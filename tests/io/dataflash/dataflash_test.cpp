@@ -5,6 +5,7 @@
 #include "tests/io/support.hpp"
 #include "tests/support/synthetic_logs.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/files.hpp"
 
 namespace veridyn::io {
 namespace {
@@ -102,7 +103,7 @@ struct RealLog {
 void check_counts(const RealLog& expected) {
   const auto path = shared_flight(expected.file);
   VERIDYN_NEEDS_SHARED(path);
-  const Log log = read_dataflash_file(path);
+  const Log log = read_dataflash(read_file(path), path.string());
   EXPECT_EQ(log.damage.bytes_lost, expected.lost);
   EXPECT_EQ(log.parameters.size(), expected.parameters);
   std::map<std::string, std::size_t> counts;
@@ -158,7 +159,7 @@ TEST(RealDataFlash, EveryRecordOfALogWithoutUnitsIsDecoded) {
 TEST(RealDataFlash, ValuesAreThoseOfAnIndependentDecoder) {
   const auto path = shared_flight("ardupilot/test_log_pilot_position.BIN");
   VERIDYN_NEEDS_SHARED(path);
-  const Recording recording = to_recording(read_dataflash_file(path));
+  const Recording recording = to_recording(read_dataflash(read_file(path), path.string()));
   const Channel& up = recording.at("IMU.AccZ");
   EXPECT_NEAR(up.times()[0], 4.046252, 1e-9);
   EXPECT_NEAR(up.value.front(), -9.674799919128418, 1e-12);

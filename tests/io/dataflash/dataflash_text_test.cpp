@@ -5,6 +5,7 @@
 #include "tests/io/support.hpp"
 #include "tests/support/synthetic_logs.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/files.hpp"
 
 namespace veridyn::io {
 namespace {
@@ -70,7 +71,7 @@ TEST(DataFlashText, SaysWhatIsWrongWithAFileThatIsNone) {
 TEST(RealDataFlashText, ReadsTheExcerptOfACopterLogWithPreambleEmptyFormatsAndNan) {
   const auto path = shared_flight("ardupilot/arducopter_nan_excerpt.log");
   VERIDYN_NEEDS_SHARED(path);
-  const Log log = read_dataflash_text_file(path);
+  const Log log = read_dataflash_text(read_file(path), path.string());
   EXPECT_EQ(log.information.at("vehicle"), "ArduCopter");
   EXPECT_TRUE(std::isnan(log.parameters.at("COMPASS_MOT_X")));
   EXPECT_DOUBLE_EQ(log.parameters.at("LOG_BITMASK"), -22530.0);

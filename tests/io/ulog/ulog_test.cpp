@@ -5,6 +5,7 @@
 
 #include "tests/io/support.hpp"
 #include "tests/support/synthetic_logs.hpp"
+#include "veridyn/core/files.hpp"
 #include "veridyn/io/ulog/px4_units.hpp"
 #include "veridyn/io/ulog/ulog_format.hpp"
 
@@ -149,7 +150,7 @@ TEST(Px4Units, KnowsFieldsByTopicAndBySuffix) {
 TEST(RealULog, EveryMessageOfAVtolLogIsDecoded) {
   const auto path = shared_flight("px4/sample_log_small.ulg");
   VERIDYN_NEEDS_SHARED(path);
-  const Log log = read_ulog_file(path);
+  const Log log = read_ulog(read_file(path), path.string());
   EXPECT_EQ(log.damage.bytes_lost, 0U);
   EXPECT_EQ(log.damage.records_lost, 0U);
   EXPECT_EQ(log.damage.dropouts, 1U);
@@ -191,7 +192,7 @@ TEST(RealULog, EveryMessageOfAVtolLogIsDecoded) {
 TEST(RealULog, AppendedDataOfACrashedLoggerAreRead) {
   const auto path = shared_flight("px4/sample_appended_multiple.ulg");
   VERIDYN_NEEDS_SHARED(path);
-  const Log log = read_ulog_file(path);
+  const Log log = read_ulog(read_file(path), path.string());
   EXPECT_EQ(log.damage.bytes_lost, 0U);
   EXPECT_EQ(log.parameters.size(), 750U);
   std::size_t rows = 0;

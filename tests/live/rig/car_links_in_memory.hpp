@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "tests/live/time/set_clock.hpp"
 #include "tests/live/virtual/one_to_five.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/live/driver/driver_source.hpp"

@@ -6,6 +6,7 @@
 
 #include "tests/live/rig/car_links_in_memory.hpp"
 #include "tests/live/rig/links_in_memory.hpp"
+#include "tests/live/time/set_clock.hpp"
 #include "tests/live/weaving_drive.hpp"
 #include "tests/support/counting_new.hpp"
 #include "tests/support/sanitized.hpp"

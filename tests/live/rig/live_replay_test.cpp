@@ -10,6 +10,7 @@
 #include "tests/live/rig/car_links_in_memory.hpp"
 #include "tests/live/rig/links_in_memory.hpp"
 #include "tests/live/rig/recorded_run.hpp"
+#include "tests/live/time/set_clock.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/live/recording/live_recorder.hpp"

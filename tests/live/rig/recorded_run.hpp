@@ -5,6 +5,7 @@
 #include <string>
 
 #include "tests/live/rig/links_in_memory.hpp"
+#include "tests/live/time/set_clock.hpp"
 #include "veridyn/live/recording/live_recorder.hpp"
 #include "veridyn/live/rig/live_loop.hpp"
 

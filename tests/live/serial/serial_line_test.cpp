@@ -1,6 +1,8 @@
 #include "veridyn/live/serial/serial_line.hpp"
 
+#include <asm/termbits.h>
 #include <gtest/gtest.h>
+#include <sys/ioctl.h>
 
 #include <algorithm>
 #include <fstream>
@@ -13,6 +15,12 @@
 
 namespace veridyn::live {
 namespace {
+
+/// What a line is set to [bit/s]; -1 where it is none.
+int baud_of(int descriptor) {
+  struct termios2 settings = {};
+  return ioctl(descriptor, TCGETS2, &settings) == 0 ? static_cast<int>(settings.c_ospeed) : -1;
+}
 
 TEST(SerialLine, PassesEveryByteAsItIs) {
   PseudoTerminal terminal;

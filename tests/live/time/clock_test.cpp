@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/live/time/set_clock.hpp"
+
 namespace veridyn::live {
 namespace {
 

@@ -11,7 +11,7 @@
 #include <random>
 
 #include "tests/muscle/actuator/muscle_variants.hpp"
-#include "veridyn/numerics/ode.hpp"
+#include "tests/support/integrate_adaptive.hpp"
 
 namespace veridyn::muscle {
 namespace {

@@ -6,7 +6,7 @@
 #include <Eigen/Dense>
 
 #include "tests/muscle/dynamics/model_trees.hpp"
-#include "veridyn/numerics/ode.hpp"
+#include "tests/support/integrate_adaptive.hpp"
 
 namespace veridyn::muscle {
 namespace {

@@ -34,27 +34,6 @@ TEST(Held, StepsAddUp) {
   EXPECT_THROW((void)held(s, kNaN, Hold::kZeroOrder), InputError);
 }
 
-TEST(ZeroOrderHold, ResponseIsThatOfTheHeldContinuousSystem) {
-  // Of a staircase the continuous system sees its aliases too: sum over k of H(w + k ws) (1 - e^-s h) / (s h).
-  const double h = 0.1, w = 3.0;
-  std::complex<double> sum = 0.0;
-  for (int k = -40000; k <= 40000; ++k) {
-    const std::complex<double> s(0.0, w + 2.0 * kPi * k / h);
-    sum += kBand.response(s.imag()) * (1.0 - std::exp(-s * h)) / (s * h);
-  }
-  EXPECT_NEAR(std::abs(zero_order_hold(realise(kBand), h).response(w, h)(0, 0) - sum), 0.0, 1e-6);
-}
-
-TEST(FirstOrderHold, ConvergesWithTheSquareOfTheStep) {
-  const StateSpace s = realise(kBand);
-  const auto error = [&](double h) {
-    return std::abs(first_order_hold(s, h).response(3.0, h)(0, 0) - kBand.response(3.0));
-  };
-  EXPECT_NEAR(error(0.02) / error(0.01), 4.0, 0.1);
-  EXPECT_NEAR(error(0.01) / error(0.005), 4.0, 0.05);
-  EXPECT_LT(error(0.01), 1e-3);
-}
-
 TEST(Bilinear, MeetsTheContinuousResponseWhereItIsWarped) {
   const StateSpace s = realise(kBand);
   for (const double w : {0.5, 3.0, 20.0}) {

@@ -46,7 +46,7 @@ TEST(StateSpace, PolesAreThoseOfTheDenominator) {
 }
 
 TEST(StateSpace, AnIntegratorHasItsPoleAtZero) {
-  const TransferFunction t = integrator() * low_pass(2.0);
+  const TransferFunction t = TransferFunction{{1.0}, {1.0, 0.0}} * low_pass(2.0);
   const StateSpace s = realise(t);
   EXPECT_NEAR(std::abs(s.response(0.7)(0, 0) - t.response(0.7)), 0.0, 1e-15);
   EXPECT_NEAR(s.poles().real().maxCoeff(), 0.0, 1e-15);

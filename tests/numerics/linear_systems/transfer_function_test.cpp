@@ -31,18 +31,6 @@ TEST(TransferFunction, AHighPassAndItsLowPassesAddUpToOne) {
   EXPECT_NEAR(std::abs(first.response(0.3) - 1.0), 0.0, 1e-15);
 }
 
-TEST(TransferFunction, OfZerosAndPoles) {
-  const std::vector<Complex> zeros = {0.0, -2.0}, poles = {{-1.0, 2.0}, {-1.0, -2.0}, -3.0};
-  const TransferFunction t = from_zeros_and_poles(zeros, poles, 4.0);
-  EXPECT_THAT(t.numerator, ::testing::ElementsAre(4.0, 8.0, 0.0));
-  EXPECT_THAT(t.denominator, ::testing::ElementsAre(1.0, 5.0, 11.0, 15.0));
-  EXPECT_EQ(t.static_gain(), 0.0);
-  EXPECT_EQ(integrator().static_gain(), kInfinity);
-  const std::vector<Complex> alone = {{-1.0, 2.0}};
-  EXPECT_THROW((void)from_zeros_and_poles({}, alone, 1.0), InputError);
-  EXPECT_THROW((void)from_zeros_and_poles(zeros, alone, 1.0), InputError);
-}
-
 TEST(TransferFunction, RefusesWhatIsNoFilter) {
   EXPECT_THROW((void)low_pass(0.0), InputError);
   EXPECT_THROW((void)high_pass(-1.0), InputError);

@@ -3,28 +3,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "tests/report/sample_document.hpp"
-#include "tests/support/temporary_folder.hpp"
-#include "veridyn/core/error.hpp"
-#include "veridyn/core/files.hpp"
 #include "veridyn/report/document/page.hpp"
 
 namespace veridyn::report {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::Not;
-
-class WriteHtml : public testing::Test {
- protected:
-  void TearDown() override { fs::permissions(folder_, fs::perms::owner_all); }
-  test::TemporaryFolder temporary_;
-  const fs::path& folder_ = temporary_.path();
-};
 
 std::size_t count(const std::string& text, std::string_view what) {
   std::size_t found = 0;
@@ -90,35 +78,6 @@ TEST(ToHtml, SaysWhatIsMissingWithoutTheFrontEnd) {
   const std::string html = to_html(sample_document());
   EXPECT_THAT(html, HasSubstr("The picture needs the front end"));
   EXPECT_THAT(html, Not(HasSubstr("<script")));
-}
-
-TEST_F(WriteHtml, ReplacesTheOldPageAndLeavesNothingBeside) {
-  write_file(folder_ / "report.html", "old");
-  write_html({.title = "new"}, folder_ / "report.html");
-  EXPECT_THAT(read_file(folder_ / "report.html"), HasSubstr("<title>new</title>"));
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator{}), 1);
-}
-
-TEST_F(WriteHtml, RefusesAFolderThatIsNotThere) {
-  EXPECT_THROW(write_html({}, folder_ / "missing" / "report.html"), InputError);
-  EXPECT_FALSE(fs::exists(folder_ / "missing"));
-}
-
-TEST_F(WriteHtml, LeavesTheOldPageWhenTheFolderIsReadOnly) {
-  write_file(folder_ / "report.html", "old");
-  fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec);
-  if (::access(folder_.c_str(), W_OK) == 0) GTEST_SKIP() << "this user (root) may write everywhere";
-  EXPECT_THROW(write_html({}, folder_ / "report.html"), InputError);
-  EXPECT_EQ(read_file(folder_ / "report.html"), "old");
-}
-
-// Fails for every user, root too: a folder stands where the page should go.
-TEST_F(WriteHtml, LeavesEverythingAsItWasWhenItCannotReplace) {
-  fs::create_directories(folder_ / "report.html");
-  write_file(folder_ / "report.html" / "inside", "old");
-  EXPECT_THROW(write_html({}, folder_ / "report.html"), InputError);
-  EXPECT_EQ(read_file(folder_ / "report.html" / "inside"), "old");
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator{}), 1);
 }
 
 }  // namespace

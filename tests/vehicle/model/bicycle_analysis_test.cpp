@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/vehicle/exact_step_response.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/ode.hpp"
 #include "veridyn/vehicle/model/builtin_vehicles.hpp"
@@ -109,12 +110,12 @@ TEST(BicycleAnalysis, TheStepResponseSolvesTheEquationsOfMotion) {
     };
     Eigen::Vector2d x = Eigen::Vector2d::Zero();
     for (int k = 0; k < 800; ++k) x = numerics::runge_kutta_4_step(derivative, k * 1e-3, x, 1e-3);
-    const BicycleStepResponse exact = step_response(s, steer, 0.8);
+    const testing::BicycleStepResponse exact = testing::step_response(s, steer, 0.8);
     EXPECT_NEAR(exact.v, x(0), 1e-8);
     EXPECT_NEAR(exact.r, x(1), 1e-8);
     EXPECT_NEAR(exact.lateral_acceleration, derivative(0.0, x)(0) + s.u * x(1), 1e-6);
   }
-  EXPECT_EQ(step_response(reference(), 0.03, -1.0).r, 0.0);
+  EXPECT_EQ(testing::step_response(reference(), 0.03, -1.0).r, 0.0);
 }
 
 // The closed forms against the frequency response itself.
@@ -133,42 +134,6 @@ TEST(BicycleAnalysis, BandwidthPeakAndEquivalentTimeAreWhereTheResponseHasThem) 
       EXPECT_NEAR(std::abs(yaw(c.peak_frequency)), c.peak_ratio * c.yaw_rate_gain, 1e-10);
     }
   }
-}
-
-TEST(BicycleAnalysis, SensitivitiesAreThoseOfDifferences) {
-  VehicleParameters<double> p;
-  const double u = 35.0;
-  const auto J = characteristic_sensitivities(p, u);
-  const auto at = [&](std::size_t field, double value) {
-    VehicleParameters<double> changed = p;
-    double speed = u;
-    (field < kVehicleFields.size() ? field_of(changed, field) : speed) = value;
-    return to_array(characteristics(bicycle_of(changed, speed)));
-  };
-  for (std::size_t j = 0; j <= kVehicleFields.size(); ++j) {
-    const double value = j < kVehicleFields.size() ? field_of(p, j) : u;
-    if (!(std::abs(value) < 1e9)) continue;
-    const double step = 1e-5 * std::max(std::abs(value), 1.0);
-    const auto above = at(j, value + step), below = at(j, value - step);
-    for (std::size_t i = 0; i < kBicycleCharacteristics; ++i) {
-      const double expected = (above[i] - below[i]) / (2.0 * step);
-      const double got = J(i, j);
-      if (!std::isfinite(expected)) {
-        EXPECT_TRUE(std::isnan(got));
-        continue;
-      }
-      EXPECT_NEAR(got, expected, 1e-6 * std::abs(expected) + 1e-10) << kBicycleCharacteristicFields[i].name << " " << j;
-    }
-  }
-}
-
-// One parameter: sigma is |d/dp| sigma_p. K = m b/(2 L C_f) - ..., so dK/dC_f = -m b/(2 L C_f^2).
-TEST(BicycleAnalysis, SpreadsTheUncertaintyOfAStiffness) {
-  const VehicleParameters<double> p;
-  const std::size_t fields[] = {10};  // C_f
-  const Eigen::MatrixXd covariance = Eigen::MatrixXd::Constant(1, 1, 600.0 * 600.0);
-  const auto sigma = characteristic_sigmas(p, 20.0, fields, covariance);
-  EXPECT_NEAR(sigma[0], 1100.0 / (4.5 * 60000.0 * 60000.0) * 600.0, 1e-12);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "tests/vehicle/exact_step_response.hpp"
 #include "tests/vehicle/simulation/metric_value.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/vehicle/model/bicycle_analysis.hpp"
@@ -33,7 +34,7 @@ TEST(ManoeuvreMetrics, StepSteerAgreesWithTheClosedForm) {
     const BicycleCharacteristics<double> c = characteristics(bicycle);
     const double steer = 0.02;
     const std::vector<Metric> list = step_steer_metrics(drive(step_steer(steer, 1.0, 2e-3), u));
-    const auto yaw = [&](double t) { return step_response(bicycle, steer, t).r; };
+    const auto yaw = [&](double t) { return testing::step_response(bicycle, steer, t).r; };
     const double steady = c.yaw_rate_gain * steer;
     double t90 = 0.0;
     while (yaw(t90) < 0.9 * steady) t90 += 1e-5;

@@ -39,15 +39,4 @@ template <typename Scalar>
   return numerics::Vector3<Scalar>(Va * cos(alpha) * cb, Va * sin(beta), Va * sin(alpha) * cb);
 }
 
-/// Takes wind-axes components (x along the airspeed) to body components.
-template <typename Scalar>
-[[nodiscard]] numerics::Matrix3<Scalar> R_body_from_wind(const Scalar& alpha, const Scalar& beta) {
-  using std::cos;
-  using std::sin;
-  const Scalar ca = cos(alpha), sa = sin(alpha), cb = cos(beta), sb = sin(beta);
-  numerics::Matrix3<Scalar> R;
-  R << ca * cb, -ca * sb, -sa, sb, cb, Scalar(0.0), sa * cb, -sa * sb, ca;
-  return R;
-}
-
 }  // namespace veridyn::aircraft

@@ -79,7 +79,6 @@ class CarTracker {
   /// the only one.
   TrackedPose add(double time, std::span<const PoseMeasurement> candidates);
 
-  [[nodiscard]] const BlobFinder& finder() const noexcept { return finder_; }
   /// The factor on the covariance of the pixels.
   [[nodiscard]] double variance_factor() const noexcept { return (kPrior + misfit_) / (kPrior + freedom_); }
 

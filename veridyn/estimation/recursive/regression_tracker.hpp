@@ -113,7 +113,6 @@ class RegressionTracker {
 
   [[nodiscard]] const std::vector<std::string>& names() const { return regression_.names(); }
   [[nodiscard]] const RecursiveRegression& regression() const { return regression_; }
-  [[nodiscard]] const ChangeDetector& detector() const { return detector_; }
   [[nodiscard]] const TrackHistory& history() const { return history_; }
   [[nodiscard]] const std::vector<Change>& changes() const { return changes_; }
   /// Of all that watches: 1 is an alarm.

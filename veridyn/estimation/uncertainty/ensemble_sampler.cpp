@@ -251,12 +251,6 @@ void EnsembleOptions::validate(std::size_t dimensions) const {
   if (effective < 1) throw InputError("effective", "= 0 must be at least 1");
 }
 
-LogDensities point_by_point(LogDensity density, int threads) {
-  return [density = std::move(density), threads](std::span<const Eigen::VectorXd> points, std::span<double> values) {
-    numerics::parallel_for(points.size(), threads, [&](std::size_t i) { values[i] = density(points[i]); });
-  };
-}
-
 EnsembleSample sample_ensemble(const LogDensities& densities, const Eigen::MatrixXd& start,
                                const std::optional<NormalApproximation>& near, const EnsembleOptions& options,
                                Progress& progress) {

@@ -16,9 +16,6 @@ using LogDensity = std::function<double(const Eigen::VectorXd&)>;
 /// That of several points at once.
 using LogDensities = std::function<void(std::span<const Eigen::VectorXd> points, std::span<double> values)>;
 
-/// Point by point on `threads` threads (0: as many as the machine has).
-[[nodiscard]] LogDensities point_by_point(LogDensity density, int threads);
-
 /// A normal distribution near the density sampled, from a linearisation.
 struct NormalApproximation {
   Eigen::VectorXd mean;

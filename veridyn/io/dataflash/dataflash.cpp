@@ -16,7 +16,6 @@
 #include "veridyn/io/dataflash/dataflash_schema.hpp"
 #include "veridyn/io/log/clock_restarts.hpp"
 #include "veridyn/io/log/gather.hpp"
-#include "veridyn/io/log/mapped_file.hpp"
 #include "veridyn/io/log/time_stamps.hpp"
 
 namespace veridyn::io {
@@ -422,11 +421,6 @@ Log read_dataflash(std::string_view bytes, std::string source) {
   index.restarts().report_to(log);
   internal::finish(log);
   return log;
-}
-
-Log read_dataflash_file(const std::filesystem::path& path) {
-  const MappedFile file(path);
-  return read_dataflash(file.bytes(), path.string());
 }
 
 }  // namespace veridyn::io

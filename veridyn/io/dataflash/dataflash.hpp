@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -27,8 +26,5 @@ namespace veridyn::io {
 /// throws.
 /// @throws InputError when there is not one FMT record in the bytes.
 [[nodiscard]] Log read_dataflash(std::string_view bytes, std::string source);
-
-/// @throws InputError also when the file is missing, a directory, or empty.
-[[nodiscard]] Log read_dataflash_file(const std::filesystem::path& path);
 
 }  // namespace veridyn::io

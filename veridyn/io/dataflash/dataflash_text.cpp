@@ -15,7 +15,6 @@
 #include "veridyn/core/text.hpp"
 #include "veridyn/io/dataflash/dataflash_schema.hpp"
 #include "veridyn/io/log/clock_restarts.hpp"
-#include "veridyn/io/log/mapped_file.hpp"
 #include "veridyn/io/log/time_stamps.hpp"
 
 namespace veridyn::io {
@@ -291,11 +290,6 @@ Log read_dataflash_text(std::string_view bytes, std::string source) {
   read_dataflash_events(log);
   internal::finish(log);
   return log;
-}
-
-Log read_dataflash_text_file(const std::filesystem::path& path) {
-  const MappedFile file(path);
-  return read_dataflash_text(file.bytes(), path.string());
 }
 
 }  // namespace veridyn::io

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -19,8 +18,5 @@ namespace veridyn::io {
 /// counted. Texts may hold commas. Units and instances as in `read_dataflash`.
 /// @throws InputError when there is no FMT line.
 [[nodiscard]] Log read_dataflash_text(std::string_view bytes, std::string source);
-
-/// @throws InputError also when the file is missing, a directory, or empty.
-[[nodiscard]] Log read_dataflash_text_file(const std::filesystem::path& path);
 
 }  // namespace veridyn::io

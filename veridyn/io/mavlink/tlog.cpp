@@ -14,7 +14,6 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/io/log/mapped_file.hpp"
 #include "veridyn/io/log/time_stamps.hpp"
 #include "veridyn/io/mavlink/mavlink_messages.hpp"
 #include "veridyn/io/mavlink/mavlink_packet.hpp"
@@ -376,11 +375,6 @@ Log read_tlog(std::string_view bytes, std::string source) {
   log.frame = Frame::kFrd;
   internal::finish(log);
   return log;
-}
-
-Log read_tlog_file(const std::filesystem::path& path) {
-  const MappedFile file(path);
-  return read_tlog(file.bytes(), path.string());
 }
 
 }  // namespace veridyn::io

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -28,8 +27,5 @@ namespace veridyn::io {
 ///   information ("fixed wing", "ground rover") too.
 /// @throws InputError when it is none.
 [[nodiscard]] Log read_tlog(std::string_view bytes, std::string source);
-
-/// @throws InputError also when the file is missing, a directory, or empty.
-[[nodiscard]] Log read_tlog_file(const std::filesystem::path& path);
 
 }  // namespace veridyn::io

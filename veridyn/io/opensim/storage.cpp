@@ -138,8 +138,6 @@ Storage parse_storage(std::string_view text, std::string source) {
   return storage;
 }
 
-Storage read_storage(const std::filesystem::path& path) { return parse_storage(read_file(path), path.string()); }
-
 std::string to_storage_text(const Storage& storage) {
   std::string text = fmt::format("{}\nversion=1\nnRows={}\nnColumns={}\ninDegrees={}\nendheader\ntime",
                                  storage.name.empty() ? "veridyn" : storage.name, storage.rows(), storage.columns() + 1,

@@ -36,8 +36,6 @@ struct Storage {
 /// @throws InputError with file:line: no endheader, no time column, labels twice, rows of another length, cells that
 /// are not finite numbers, time that does not increase, no rows, counts in the header that the file does not keep.
 [[nodiscard]] Storage parse_storage(std::string_view text, std::string source);
-/// Reads and parses a storage file.
-[[nodiscard]] Storage read_storage(const std::filesystem::path& path);
 
 /// As text that OpenSim reads; numbers read back to the same double.
 [[nodiscard]] std::string to_storage_text(const Storage& storage);

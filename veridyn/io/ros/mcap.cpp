@@ -9,7 +9,6 @@
 
 #include "veridyn/core/bytes.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/io/log/mapped_file.hpp"
 #include "veridyn/io/packets/crc32.hpp"
 #include "veridyn/io/ros/mcap_chunk.hpp"
 #include "veridyn/io/ros/ros_log.hpp"
@@ -313,11 +312,6 @@ Log read_mcap(std::string_view bytes, std::string source) {
   messages.finish(log);
   internal::finish(log);
   return log;
-}
-
-Log read_mcap_file(const std::filesystem::path& path) {
-  const MappedFile file(path);
-  return read_mcap(file.bytes(), path.string());
 }
 
 }  // namespace veridyn::io

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -29,8 +28,5 @@ void add_mcap(std::string_view bytes, RosLog& messages, Log& log);
 /// - Messages in other encodings (protobuf, JSON) are named in the notes.
 /// @throws InputError when it is none, or no message can be decoded.
 [[nodiscard]] Log read_mcap(std::string_view bytes, std::string source);
-
-/// @throws InputError also when the file is missing, a directory, or empty.
-[[nodiscard]] Log read_mcap_file(const std::filesystem::path& path);
 
 }  // namespace veridyn::io

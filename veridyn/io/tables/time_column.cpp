@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/core/rank.hpp"
 #include "veridyn/core/text.hpp"

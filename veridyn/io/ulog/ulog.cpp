@@ -11,7 +11,6 @@
 #include "veridyn/core/bytes.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/log/clock_restarts.hpp"
-#include "veridyn/io/log/mapped_file.hpp"
 #include "veridyn/io/log/time_stamps.hpp"
 #include "veridyn/io/ulog/px4_units.hpp"
 #include "veridyn/io/ulog/ulog_format.hpp"
@@ -476,11 +475,6 @@ Log read_ulog(std::string_view bytes, std::string source) {
   walker.restarts().report_to(log);
   internal::finish(log);
   return log;
-}
-
-Log read_ulog_file(const std::filesystem::path& path) {
-  const MappedFile file(path);
-  return read_ulog(file.bytes(), path.string());
 }
 
 }  // namespace veridyn::io

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -27,8 +26,5 @@ namespace veridyn::io {
 /// @throws InputError when the magic is missing, the header is cut, or an incompatible flag is set that this reader
 /// does not know (every bit but that of appended data).
 [[nodiscard]] Log read_ulog(std::string_view bytes, std::string source);
-
-/// @throws InputError also when the file is missing, a directory, or empty.
-[[nodiscard]] Log read_ulog_file(const std::filesystem::path& path);
 
 }  // namespace veridyn::io

@@ -80,9 +80,4 @@ std::size_t PseudoTerminal::write(std::span<const std::uint8_t> bytes) {
   return written;
 }
 
-int baud_of(int descriptor) {
-  struct termios2 settings = {};
-  return ioctl(descriptor, TCGETS2, &settings) == 0 ? static_cast<int>(settings.c_ospeed) : -1;
-}
-
 }  // namespace veridyn::live

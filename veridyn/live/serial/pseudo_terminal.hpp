@@ -39,7 +39,4 @@ class PseudoTerminal {
   std::filesystem::path name_;
 };
 
-/// What a line is set to [bit/s]; -1 where it is none.
-[[nodiscard]] int baud_of(int descriptor);
-
 }  // namespace veridyn::live

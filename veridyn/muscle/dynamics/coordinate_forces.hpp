@@ -110,13 +110,4 @@ template <typename Scalar>
   return tension > Scalar(0.0) ? tension : length * 0.0;
 }
 
-/// Adds optimal_force * control of each actuator to tau. Controls are taken as they are: OpenSim too keeps the bounds
-/// for its optimisers and does not clamp.
-template <typename Scalar>
-void add_actuator_forces(std::span<const CoordinateActuator> actuators, const Scalar* controls, Scalar* tau) {
-  for (std::size_t i = 0; i < actuators.size(); ++i) {
-    tau[actuators[i].coordinate] += actuators[i].optimal_force * controls[i];
-  }
-}
-
 }  // namespace veridyn::muscle

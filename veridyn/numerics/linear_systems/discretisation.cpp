@@ -28,17 +28,6 @@ HeldSystem held(const StateSpace& system, double step, Hold hold) {
   return h;
 }
 
-StateSpace zero_order_hold(const StateSpace& system, double step) {
-  HeldSystem h = held(system, step, Hold::kZeroOrder);
-  return {std::move(h.Phi), std::move(h.Gamma), system.C, system.D};
-}
-
-StateSpace first_order_hold(const StateSpace& system, double step) {
-  const HeldSystem h = held(system, step, Hold::kFirstOrder);
-  // w = x - Slope u: w(k+1) = Phi w(k) + (Gamma + Phi Slope - Slope) u(k).
-  return {h.Phi, h.Gamma + product(h.Phi, h.Slope) - h.Slope, system.C, system.D + product(system.C, h.Slope)};
-}
-
 StateSpace bilinear(const StateSpace& system, double step, double omega) {
   if (!(step > 0.0 && std::isfinite(step))) throw InputError("step", fmt::format("is {} s; must be > 0", step));
   if (!(omega >= 0.0 && omega * step < kPi))

@@ -20,11 +20,6 @@ struct HeldSystem {
 /// InputError for a step that is negative or not finite.
 [[nodiscard]] HeldSystem held(const StateSpace& system, double step, Hold hold);
 
-/// Discrete system of the inputs u(k) alone, states x(k), with kZeroOrder.
-[[nodiscard]] StateSpace zero_order_hold(const StateSpace& system, double step);
-/// The same for inputs on lines: states x(k) - Slope u(k), so that y(k) depends on u(k), u(k-1), ... alone.
-[[nodiscard]] StateSpace first_order_hold(const StateSpace& system, double step);
-
 /// By the bilinear transformation s = a (z - 1) / (z + 1), a = omega / tan(omega step / 2): the frequency response of
 /// the continuous system at `omega` is that of the discrete one. @param omega [rad/s]; 0: a = 2 / step (Tustin)
 /// @throws InputError unless 0 <= omega step < pi, and where a is a pole.

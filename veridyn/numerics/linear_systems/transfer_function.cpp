@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::numerics {
@@ -40,24 +39,6 @@ void drop_leading_zeros(std::vector<double>& polynomial) {
   if (polynomial.empty()) polynomial.push_back(0.0);
 }
 
-/// prod(s - root_i), real.
-std::vector<double> polynomial_of(std::span<const Complex> roots, const char* what) {
-  std::vector<Complex> p = {1.0};
-  for (const Complex root : roots) {
-    p.emplace_back(0.0);
-    for (std::size_t i = p.size() - 1; i > 0; --i) p[i] -= root * p[i - 1];
-  }
-  std::vector<double> real;
-  double largest = 0.0;
-  for (const Complex c : p) largest = std::max(largest, std::abs(c));
-  for (const Complex c : p) {
-    constexpr double kRounding = 1e-9;
-    if (!(std::abs(c.imag()) <= kRounding * largest)) throw InputError(what, "complex ones must be in conjugate pairs");
-    real.push_back(c.real());
-  }
-  return real;
-}
-
 double checked(const char* name, double value) {
   if (!(value > 0.0 && std::isfinite(value))) throw InputError(name, fmt::format("is {}; must be > 0", value));
   return value;
@@ -68,11 +49,6 @@ double checked(const char* name, double value) {
 Complex TransferFunction::response(double omega) const {
   const Complex s(0.0, omega);
   return evaluate(numerator, s) / evaluate(denominator, s);
-}
-
-double TransferFunction::static_gain() const {
-  const double top = numerator.back(), bottom = denominator.back();
-  return bottom == 0.0 ? kInfinity : top / bottom;
 }
 
 void TransferFunction::normalise() {
@@ -102,12 +78,6 @@ TransferFunction operator+(const TransferFunction& a, const TransferFunction& b)
           product(a.denominator, b.denominator)};
 }
 
-TransferFunction from_zeros_and_poles(std::span<const Complex> zeros, std::span<const Complex> poles, double gain) {
-  TransferFunction t = gain * TransferFunction{polynomial_of(zeros, "zeros"), polynomial_of(poles, "poles")};
-  t.normalise();
-  return t;
-}
-
 TransferFunction low_pass(double omega) { return {{checked("omega", omega)}, {1.0, omega}}; }
 
 TransferFunction low_pass(double omega, double zeta) {
@@ -121,7 +91,5 @@ TransferFunction high_pass(double omega, double zeta) {
   checked("omega", omega);
   return {{1.0, 0.0, 0.0}, {1.0, 2.0 * checked("zeta", zeta) * omega, omega * omega}};
 }
-
-TransferFunction integrator() { return {{1.0}, {1.0, 0.0}}; }
 
 }  // namespace veridyn::numerics

@@ -13,8 +13,6 @@ struct TransferFunction {
 
   /// At s = j omega. @param omega [rad/s]
   [[nodiscard]] std::complex<double> response(double omega) const;
-  /// At s = 0; infinite where there is a pole.
-  [[nodiscard]] double static_gain() const;
   /// Coefficients without leading zeros. @throws InputError where one is not finite, the denominator is zero, or the
   /// numerator's degree is larger.
   void normalise();
@@ -27,11 +25,6 @@ struct TransferFunction {
 /// In parallel.
 [[nodiscard]] TransferFunction operator+(const TransferFunction& a, const TransferFunction& b);
 
-/// gain prod(s - zero_i) / prod(s - pole_i). @throws InputError where complex ones are not in conjugate pairs, or there
-/// are more zeros than poles.
-[[nodiscard]] TransferFunction from_zeros_and_poles(std::span<const std::complex<double>> zeros,
-                                                    std::span<const std::complex<double>> poles, double gain);
-
 /// omega / (s + omega). @param omega break frequency, > 0 [rad/s]
 [[nodiscard]] TransferFunction low_pass(double omega);
 /// omega^2 / (s^2 + 2 zeta omega s + omega^2). @param zeta damping ratio, > 0
@@ -40,7 +33,5 @@ struct TransferFunction {
 [[nodiscard]] TransferFunction high_pass(double omega);
 /// s^2 / (s^2 + 2 zeta omega s + omega^2)
 [[nodiscard]] TransferFunction high_pass(double omega, double zeta);
-/// 1 / s
-[[nodiscard]] TransferFunction integrator();
 
 }  // namespace veridyn::numerics

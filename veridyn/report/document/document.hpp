@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-/// A report as data: what is shown, not how. No domain in here; a domain fills these plain structs, `write_html` makes
+/// A report as data: what is shown, not how. No domain in here; a domain fills these plain structs, `to_html` makes
 /// the page. Texts are UTF-8 and always shown as they are, never interpreted as HTML: they may come from a log.
 /// Every field has a default, so designated initialisers may name the few that matter.
 /// A NaN or infinite number is a missing one (a gap in a line, a dash in a table). Units are texts in square-bracket

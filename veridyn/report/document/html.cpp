@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "veridyn/core/assert.hpp"
-#include "veridyn/core/files.hpp"
 #include "veridyn/report/document/page.hpp"
 #include "veridyn/report/document/static_html.hpp"
 
@@ -33,10 +32,6 @@ std::string to_html(const Document& document, const JsonOptions& options) {
   }
   html += page.substr(from);
   return html;
-}
-
-void write_html(const Document& document, const std::filesystem::path& path, const JsonOptions& options) {
-  write_file(path, to_html(document, options));
 }
 
 }  // namespace veridyn::report

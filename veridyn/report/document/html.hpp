@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 #include "veridyn/report/document/document.hpp"
@@ -12,9 +11,5 @@ namespace veridyn::report {
 /// (verdict, facts, texts, tables); with one, figures with linked zoom, sorting, light and dark colours, and paper.
 /// Built without the front end (CMake option VERIDYN_WEB=OFF) the page has no script and says that figures need it.
 [[nodiscard]] std::string to_html(const Document& document, const JsonOptions& options = {});
-
-/// Writes `to_html`. At every moment the old or the whole new page stands under `path`.
-/// @throws InputError when the folder is missing or not writable, or the disk is full; an old file is then untouched.
-void write_html(const Document& document, const std::filesystem::path& path, const JsonOptions& options = {});
 
 }  // namespace veridyn::report

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <span>
 #include <string_view>
 #include <vector>
 
@@ -92,18 +91,6 @@ template <typename Scalar>
       c.equivalent_time};
 }
 
-/// d(characteristics)/d(parameters of `kVehicleFields`, then u), for linear tyres with stiffness C_f and C_r: rows as
-/// `kBicycleCharacteristicFields`, columns as `kVehicleFields` and the speed last. By automatic differentiation. Rows
-/// of numbers that do not exist are NaN.
-[[nodiscard]] Eigen::Matrix<double, kBicycleCharacteristics, Eigen::Dynamic> characteristic_sensitivities(
-    const VehicleParameters<double>& parameters, double speed);
-
-/// Standard deviations of the characteristics for a covariance of some parameters (first order): `fields` are indices
-/// of `kVehicleFields`, in the order of the covariance.
-[[nodiscard]] std::array<double, kBicycleCharacteristics> characteristic_sigmas(
-    const VehicleParameters<double>& parameters, double speed, std::span<const std::size_t> fields,
-    const Eigen::MatrixXd& covariance);
-
 /// A mode of a linear system.
 struct Mode {
   std::complex<double> eigenvalue;  ///< [1/s]; of a pair the one with the positive imaginary part
@@ -127,13 +114,6 @@ struct BicycleResponse {
 /// At `count` frequencies in equal ratios from `low_Hz` to `high_Hz`.
 [[nodiscard]] std::vector<BicycleResponse> frequency_response(const LinearBicycle<double>& bicycle, double low_Hz,
                                                               double high_Hz, std::size_t count);
-
-/// Exact motion of the linear bicycle after a step of steer from straight running, at `time` after the step.
-struct BicycleStepResponse {
-  double v = 0.0, r = 0.0, lateral_acceleration = 0.0;
-};
-/// After a step of `steer` [rad], at `time` [s].
-[[nodiscard]] BicycleStepResponse step_response(const LinearBicycle<double>& bicycle, double steer, double time);
 
 // ---- Templates ----
 

@@ -21,7 +21,7 @@ FlightSignals flown_signals() {
   return signals;
 }
 
-TEST(ParameterDoubt, IsThatOfALinearLawInClosedForm) {
+TEST(DoubtSensitivity, IsThatOfALinearLawInClosedForm) {
   // A slope over alpha and a constant: a scale of alpha divides the slope, a zero moves the constant by it.
   constexpr double kSlope = 4.0, kConstant = 0.3;
   const auto estimate = [&](const FlightSignals& changed) {
@@ -31,25 +31,22 @@ TEST(ParameterDoubt, IsThatOfALinearLawInClosedForm) {
     return Eigen::VectorXd(Eigen::Vector2d(kConstant + kSlope * truth[0] - slope * a[0], slope));
   };
   const Eigen::VectorXd theta = Eigen::Vector2d(kConstant, kSlope);
-  const std::vector<SignalDoubt> scale{{.signal = FlightSignal::kAlpha, .scale = 0.05}};
-  const std::vector<SignalDoubt> zero{{.signal = FlightSignal::kAlpha, .zero = 0.02}};
-  EXPECT_NEAR(parameter_doubt(flown_signals(), scale, theta, estimate)(1), 0.05 * kSlope, 0.01 * 0.05 * kSlope);
-  EXPECT_NEAR(parameter_doubt(flown_signals(), scale, theta, estimate)(0), 0.0, 1e-12);
-  EXPECT_NEAR(parameter_doubt(flown_signals(), zero, theta, estimate)(0), 0.02 * kSlope, 1e-12);
-  // Independent doubts add as squares.
-  const std::vector<SignalDoubt> both{scale[0], zero[0]};
-  EXPECT_NEAR(parameter_doubt(flown_signals(), both, theta, estimate)(0), 0.02 * kSlope, 1e-12);
-  EXPECT_NEAR(parameter_doubt(flown_signals(), both, theta, estimate)(1),
-              parameter_doubt(flown_signals(), scale, theta, estimate)(1), 1e-12);
+  const std::vector<SignalDoubt> doubts{{.signal = FlightSignal::kAlpha, .scale = 0.05},
+                                        {.signal = FlightSignal::kAlpha, .zero = 0.02}};
+  const Eigen::MatrixXd J = doubt_sensitivity(flown_signals(), doubts, theta, estimate);
+  EXPECT_NEAR(J(0, 0), 0.0, 1e-12);
+  EXPECT_NEAR(J(1, 0), -0.05 * kSlope, 0.01 * 0.05 * kSlope);
+  EXPECT_NEAR(J(0, 1), -0.02 * kSlope, 1e-12);
+  EXPECT_NEAR(J(1, 1), 0.0, 1e-12);
 }
 
-TEST(ParameterDoubt, LeavesOutWhatTheRecordingHasNotOrCannotBeEstimatedAgain) {
+TEST(DoubtSensitivity, LeavesOutWhatTheRecordingHasNotOrCannotBeEstimatedAgain) {
   const Eigen::VectorXd theta = Eigen::Vector2d(1.0, 2.0);
   const std::vector<SignalDoubt> of_beta{{.signal = FlightSignal::kBeta, .scale = 0.1}};
   const auto same = [&](const FlightSignals&) { return Eigen::VectorXd(2.0 * theta); };
-  EXPECT_TRUE(parameter_doubt(flown_signals(), of_beta, theta, same).isZero());
+  EXPECT_TRUE(doubt_sensitivity(flown_signals(), of_beta, theta, same).isZero());
   const std::vector<SignalDoubt> of_alpha{{.signal = FlightSignal::kAlpha, .scale = 0.1}};
-  EXPECT_TRUE(parameter_doubt(flown_signals(), of_alpha, theta, [](const FlightSignals&) {
+  EXPECT_TRUE(doubt_sensitivity(flown_signals(), of_alpha, theta, [](const FlightSignals&) {
                 return Eigen::VectorXd();
               }).isZero());
 }

@@ -39,12 +39,6 @@ Eigen::MatrixXd doubt_sensitivity(const FlightSignals& signals, std::span<const 
   return columns;
 }
 
-Eigen::VectorXd parameter_doubt(const FlightSignals& signals, std::span<const SignalDoubt> doubts,
-                                const Eigen::VectorXd& theta,
-                                const std::function<Eigen::VectorXd(const FlightSignals&)>& estimate) {
-  return doubt_sensitivity(signals, doubts, theta, estimate).rowwise().norm();
-}
-
 estimation::Evidence doubt_row(const std::string& coefficient, std::span<const Parameter> parameters,
                                const Eigen::VectorXd& doubt) {
   constexpr double kLimit = 1.0;

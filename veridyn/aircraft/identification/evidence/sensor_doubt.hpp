@@ -22,18 +22,13 @@ namespace veridyn::aircraft {
 /// The signals as they would be with an error of so many standard deviations.
 [[nodiscard]] FlightSignals with_changed(FlightSignals signals, const SignalDoubt& doubt, double deviations);
 
-/// Change of the parameters per standard deviation of each doubt, a column a doubt; see `parameter_doubt`.
-[[nodiscard]] Eigen::MatrixXd doubt_sensitivity(const FlightSignals& signals, std::span<const SignalDoubt> doubts,
-                                                const Eigen::VectorXd& theta,
-                                                const std::function<Eigen::VectorXd(const FlightSignals&)>& estimate);
-
-/// Standard deviation of each parameter for all doubts together, which are independent: each signal is changed and the
+/// Change of the parameters per standard deviation of each doubt, a column a doubt: the signal is changed and the
 /// parameters estimated again, linearly about `theta`. What cannot be estimated again counts for nothing. A thrust that
 /// was computed from the airspeed stays.
 /// @param estimate parameters of the regression on the signals given; empty where that fails
-[[nodiscard]] Eigen::VectorXd parameter_doubt(const FlightSignals& signals, std::span<const SignalDoubt> doubts,
-                                              const Eigen::VectorXd& theta,
-                                              const std::function<Eigen::VectorXd(const FlightSignals&)>& estimate);
+[[nodiscard]] Eigen::MatrixXd doubt_sensitivity(const FlightSignals& signals, std::span<const SignalDoubt> doubts,
+                                                const Eigen::VectorXd& theta,
+                                                const std::function<Eigen::VectorXd(const FlightSignals&)>& estimate);
 
 /// The row that states doubts alongside intervals: "not verified" where one is larger than its parameter's standard
 /// error, which it names, else passed. Grades do not depend on it.

@@ -1,6 +1,4 @@
-#include "veridyn/numerics/ode.hpp"
-
-#include <fmt/format.h>
+#include "tests/support/integrate_adaptive.hpp"
 
 #include <boost/numeric/odeint/stepper/controlled_runge_kutta.hpp>
 #include <boost/numeric/odeint/stepper/generation.hpp>
@@ -13,20 +11,6 @@
 namespace veridyn::numerics {
 
 namespace odeint = boost::numeric::odeint;
-
-std::string IntegrationResult::message() const {
-  switch (end) {
-    case IntegrationEnd::kReached:
-      return fmt::format("reached t = {:g} in {} steps", time, steps);
-    case IntegrationEnd::kStepLimit:
-      return fmt::format("stopped at t = {:g}: {} steps used up", time, steps);
-    case IntegrationEnd::kStepSize:
-      return fmt::format("stopped at t = {:g}: the tolerance needs a step below the precision of time", time);
-    case IntegrationEnd::kNotFinite:
-      return fmt::format("stopped at t = {:g}: the state is no longer finite", time);
-  }
-  return {};
-}
 
 IntegrationResult integrate_adaptive(const OdeFunction& function, const Eigen::VectorXd& start, double begin,
                                      double end, const IntegrationOptions& options,
