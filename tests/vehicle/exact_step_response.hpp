@@ -5,14 +5,14 @@
 
 #include "veridyn/vehicle/model/bicycle_analysis.hpp"
 
-namespace veridyn::testing {
+namespace veridyn::vehicle::testing {
 
 /// Exact motion of the linear bicycle after a step of steer from straight running, at `time` after the step.
 struct BicycleStepResponse {
   double v = 0.0, r = 0.0, lateral_acceleration = 0.0;
 };
 /// After a step of `steer` [rad], at `time` [s].
-inline BicycleStepResponse step_response(const vehicle::LinearBicycle<double>& bicycle, double steer, double time) {
+inline BicycleStepResponse step_response(const LinearBicycle<double>& bicycle, double steer, double time) {
   if (!(time >= 0.0)) return {};
   const Eigen::Matrix2d A = bicycle.A();
   const Eigen::Vector2d drive = bicycle.B() * steer;
@@ -31,4 +31,4 @@ inline BicycleStepResponse step_response(const vehicle::LinearBicycle<double>& b
   return {x(0), x(1), y(1)};
 }
 
-}  // namespace veridyn::testing
+}  // namespace veridyn::vehicle::testing

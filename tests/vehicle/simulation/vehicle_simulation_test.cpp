@@ -168,7 +168,7 @@ TEST(FourWheelSimulation, HasATwinAtOneFifthWithGravityScaled) {
   // With the gravity of the Earth the same model behaves differently: its springs, soft as the mass is small, do not
   // hold the weight that is five times theirs, and it tips over in the first bend.
   const auto on_earth = drive(linear_car(twin(p, length, mass)), reference_steer, {.speed = 4.0});
-  EXPECT_EQ(on_earth.end, SimulationEnd::kRolledOver);
+  EXPECT_EQ(on_earth.end, DriveEnd::kRolledOver);
 }
 
 TEST(FourWheelSimulation, StopsWhenInterruptedAndKeepsWhatItHas) {
