@@ -15,12 +15,9 @@
 #include "veridyn/vehicle/model/wheel_guidance.hpp"
 #include "veridyn/vehicle/model/wheel_steering.hpp"
 #include "veridyn/vehicle/tyre/aligning_moments.hpp"
-#include "veridyn/vehicle/tyre/four_fiala_tyres.hpp"
-#include "veridyn/vehicle/tyre/four_linear_tyres.hpp"
-#include "veridyn/vehicle/tyre/four_magic_formula.hpp"
-#include "veridyn/vehicle/tyre/four_simple_magic_formula.hpp"
 #include "veridyn/vehicle/tyre/four_tyres.hpp"
 #include "veridyn/vehicle/tyre/tyre.hpp"
+#include "veridyn/vehicle/tyre/tyre_laws.hpp"
 #include "veridyn/vehicle/tyre/wheel_arrays.hpp"
 #include "veridyn/vehicle/tyre/wheels.hpp"
 

@@ -2,9 +2,8 @@
 
 namespace veridyn::vehicle {
 
-template class FourWheelModel<double, LinearTyre<double>>;
-template class FourWheelModel<double, FialaTyre<double>>;
-template class FourWheelModel<double, SimpleMagicFormulaTyre<double>>;
-template class FourWheelModel<double, MagicFormulaTyre<double>>;
+#define VERIDYN_FOUR_WHEELS_ON(Tyre) template class FourWheelModel<double, Tyre<double>>;
+VERIDYN_TYRE_LAWS(VERIDYN_FOUR_WHEELS_ON)
+#undef VERIDYN_FOUR_WHEELS_ON
 
 }  // namespace veridyn::vehicle

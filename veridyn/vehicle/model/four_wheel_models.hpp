@@ -6,9 +6,8 @@
 /// header does not compile it again.
 namespace veridyn::vehicle {
 
-extern template class FourWheelModel<double, LinearTyre<double>>;
-extern template class FourWheelModel<double, FialaTyre<double>>;
-extern template class FourWheelModel<double, SimpleMagicFormulaTyre<double>>;
-extern template class FourWheelModel<double, MagicFormulaTyre<double>>;
+#define VERIDYN_FOUR_WHEELS_ON(Tyre) extern template class FourWheelModel<double, Tyre<double>>;
+VERIDYN_TYRE_LAWS(VERIDYN_FOUR_WHEELS_ON)
+#undef VERIDYN_FOUR_WHEELS_ON
 
 }  // namespace veridyn::vehicle

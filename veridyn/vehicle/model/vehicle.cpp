@@ -190,7 +190,11 @@ KnownVehicle with_tyres(const StudyTable& subject, KnownVehicle known) {
     known.vehicle.tyres = tyres;
     return known;
   }
-  static const std::vector<std::string> kKinds{"linear", "fiala", "magic formula"};
+  static const std::vector<std::string> kKinds = [] {
+    std::vector<std::string> names;
+    AllTyresByNumbers::for_each([&]<typename Tyre>() { names.emplace_back(Tyre::kStudyName); });
+    return names;
+  }();
   kind = subject.choice_or("tyre", kKinds, "linear");
   known.vehicle.tyre_text = kind;
   return known;
@@ -203,27 +207,29 @@ decltype(Vehicle::tyres) tyres_of(const StudyTable& subject, const Vehicle& vehi
   const StudyTable details = subject.table_or_empty("tyres");
   const double trail = details.number_or("pneumatic_trail", "m", 0.0);
   if (!(std::abs(trail) < 1.0)) details.fail("pneumatic_trail", fmt::format("is {:g} m; must be below 1 m", trail));
-  if (vehicle.tyre_text != "linear" && !std::isfinite(p.mu))
-    subject.fail("tyre", fmt::format("is \"{}\", which needs the friction coefficient `mu`", vehicle.tyre_text));
   const auto detailed = [&]<typename Tyre>(AxleTyres<Tyre> tyres) {
     for (Tyre* t : {&tyres.front, &tyres.rear}) {
       t->slip_stiffness = details.positive_or("slip_stiffness", "N", t->slip_stiffness);
       t->pneumatic_trail = trail;
-      if constexpr (requires { t->mu_load; }) {
-        t->C = details.number_or("C", "1", t->C);
-        t->E = details.number_or("E", "1", t->E);
-        t->mu_load = details.number_or("mu_load", "1", t->mu_load);
-        t->stiffness_saturation = details.number_or("stiffness_saturation", "1", t->stiffness_saturation);
-        if (!(t->C >= 1.0 && t->C < 2.0)) details.fail("C", fmt::format("is {:g}; must be from 1 to below 2", t->C));
-        if (!(t->E <= 1.0)) details.fail("E", fmt::format("is {:g}; must be at most 1", t->E));
-        if (!(t->mu_load >= 0.0 && t->mu_load < 1.0)) details.fail("mu_load", "must be from 0 to below 1");
+      if constexpr (requires { Tyre::study_keys(); }) {
+        for (const auto& key : Tyre::study_keys()) t->*key.value = details.number_or(key.name, "1", t->*key.value);
+        for (const auto& key : Tyre::study_keys()) {
+          const double value = t->*key.value;
+          if (key.is_admissible != nullptr && !key.is_admissible(value))
+            details.fail(key.name, fmt::format(fmt::runtime(key.otherwise), value));
+        }
       }
     }
     return tyres;
   };
-  if (vehicle.tyre_text == "linear") return detailed(tyres_by_numbers<LinearTyre<double>>(p));
-  if (vehicle.tyre_text == "fiala") return detailed(tyres_by_numbers<FialaTyre<double>>(p));
-  return detailed(tyres_by_numbers<SimpleMagicFormulaTyre<double>>(p));
+  VehicleTyres tyres;
+  AllTyresByNumbers::for_each([&]<typename Tyre>() {
+    if (vehicle.tyre_text != Tyre::kStudyName) return;
+    if (Tyre::kNeedsFriction && !std::isfinite(p.mu))
+      subject.fail("tyre", fmt::format("is \"{}\", which needs the friction coefficient `mu`", Tyre::kStudyName));
+    tyres = detailed(tyres_by_numbers<Tyre>(p));
+  });
+  return tyres;
 }
 
 /// Of the front tyres [m]; of a file's, what stands for it there.
@@ -236,6 +242,19 @@ double pneumatic_trail(const VehicleTyres& tyres) {
           return t.front.coefficients.QDZ1 * t.front.coefficients.UNLOADED_RADIUS;
       },
       tyres);
+}
+
+/// A tyre's own numbers, as a study gives them; empty where it has none.
+template <typename Tyre>
+std::string study_keys_toml(const Tyre& tyre) {
+  std::string text;
+  if constexpr (requires { Tyre::study_keys(); }) {
+    for (const auto& key : Tyre::study_keys()) {
+      text += fmt::format("{} = {}", key.name, tyre.*key.value);
+      text += key.meaning.empty() ? "\n" : fmt::format("  # {}\n", key.meaning);
+    }
+  }
+  return text;
 }
 
 }  // namespace
@@ -352,14 +371,10 @@ std::string write_vehicle_toml(const Vehicle& vehicle) {
   } else {
     text += "tyre = " + quoted(vehicle.tyre_text) + "\n";
     const double trail = pneumatic_trail(vehicle.tyres);
-    const auto* curved = std::get_if<AxleTyres<SimpleMagicFormulaTyre<double>>>(&vehicle.tyres);
-    if (trail != 0.0 || curved != nullptr) text += "[subject.tyres]\n";
+    const std::string keys = std::visit([](const auto& t) { return study_keys_toml(t.front); }, vehicle.tyres);
+    if (trail != 0.0 || !keys.empty()) text += "[subject.tyres]\n";
     if (trail != 0.0) text += fmt::format("pneumatic_trail = {}\n", trail);
-    if (curved != nullptr) {
-      const SimpleMagicFormulaTyre<double>& t = curved->front;
-      text += fmt::format("C = {}  # shape\nE = {}  # curvature\nmu_load = {}\nstiffness_saturation = {}\n", t.C, t.E,
-                          t.mu_load, t.stiffness_saturation);
-    }
+    text += keys;
   }
   return text + write_suspension_toml(vehicle.suspension_f, vehicle.suspension_r, vehicle.lift);
 }

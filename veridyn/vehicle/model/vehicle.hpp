@@ -38,8 +38,7 @@ template <typename Tyre>
 }
 
 /// Tyres of any kind, both axles of the same.
-using VehicleTyres = std::variant<AxleTyres<LinearTyre<double>>, AxleTyres<FialaTyre<double>>,
-                                  AxleTyres<SimpleMagicFormulaTyre<double>>, AxleTyres<MagicFormulaTyre<double>>>;
+using VehicleTyres = AllTyres::Variant<AxleTyres>;
 
 /// The physical vehicle: what is measured in the workshop, and its tyres as far as known.
 struct Vehicle {

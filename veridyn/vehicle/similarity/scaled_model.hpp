@@ -1,5 +1,7 @@
 #pragma once
 
+#include <concepts>
+
 #include "veridyn/vehicle/model/four_wheel_models.hpp"
 #include "veridyn/vehicle/similarity/similarity.hpp"
 
@@ -11,37 +13,12 @@ namespace veridyn::vehicle {
 // or under `ScaledVehicle::similar_gravity`.
 
 /// The tyre of the scaled vehicle.
-template <typename Scalar>
-[[nodiscard]] LinearTyre<Scalar> scaled(const LinearTyre<Scalar>& tyre, const ScaleFactors& factors) {
-  return {tyre.stiffness * factors.force(), tyre.slip_stiffness * factors.force(), tyre.mu,
-          tyre.pneumatic_trail * factors.length};
+template <typename Tyre>
+requires requires(const Tyre& tyre) {
+  { tyre.scaled(1.0, 1.0) } -> std::same_as<Tyre>;
 }
-
-/// The tyre of the scaled vehicle.
-template <typename Scalar>
-[[nodiscard]] FialaTyre<Scalar> scaled(const FialaTyre<Scalar>& tyre, const ScaleFactors& factors) {
-  return {tyre.stiffness * factors.force(), tyre.slip_stiffness * factors.force(), tyre.mu,
-          tyre.pneumatic_trail * factors.length};
-}
-
-/// The tyre of the scaled vehicle.
-template <typename Scalar>
-[[nodiscard]] SimpleMagicFormulaTyre<Scalar> scaled(SimpleMagicFormulaTyre<Scalar> tyre, const ScaleFactors& factors) {
-  tyre.stiffness *= factors.force();
-  tyre.slip_stiffness *= factors.force();
-  tyre.nominal_load *= factors.force();
-  tyre.pneumatic_trail *= factors.length;
-  return tyre;
-}
-
-/// All coefficients of tyre files but the nominal load and the radius are dimensionless.
-template <typename Scalar>
-[[nodiscard]] MagicFormulaTyre<Scalar> scaled(MagicFormulaTyre<Scalar> tyre, const ScaleFactors& factors) {
-  tyre.coefficients.FNOMIN *= factors.force();
-  tyre.coefficients.UNLOADED_RADIUS *= factors.length;
-  tyre.range.load_min *= factors.force();
-  tyre.range.load_max *= factors.force();
-  return tyre;
+[[nodiscard]] Tyre scaled(const Tyre& tyre, const ScaleFactors& factors) {
+  return tyre.scaled(factors.force(), factors.length);
 }
 
 /// The axle of the scaled vehicle.

@@ -293,9 +293,8 @@ recording::MotionSample SteppedDrive<Tyre>::motion(const Eigen::Vector3d& place)
   return recording::at_place(out, place);
 }
 
-template class SteppedDrive<LinearTyre<double>>;
-template class SteppedDrive<FialaTyre<double>>;
-template class SteppedDrive<SimpleMagicFormulaTyre<double>>;
-template class SteppedDrive<MagicFormulaTyre<double>>;
+#define VERIDYN_STEP_ON(Tyre) template class SteppedDrive<Tyre<double>>;
+VERIDYN_TYRE_LAWS(VERIDYN_STEP_ON)
+#undef VERIDYN_STEP_ON
 
 }  // namespace veridyn::vehicle

@@ -171,21 +171,13 @@ DriveEnd ended(const FourWheelState<double>& s, bool speed_varies) {
 
 }  // namespace internal
 
-// One line per tyre.
-// NOLINTBEGIN(bugprone-macro-parentheses): a type takes none
-#define VERIDYN_SIMULATE_ON(Tyre)                                                                                      \
-  template VehicleTrajectory simulate(const FourWheelModel<double, Tyre>&, Driver&, const Road*,                       \
-                                      const SimulationOptions&, Progress&,                                             \
-                                      std::span<const ModelChange<FourWheelModel<double, Tyre>>>);                     \
-  template VehicleTrajectory simulate(const BicycleModel<double, Tyre>&, Driver&, const SimulationOptions&, Progress&, \
-                                      std::span<const ModelChange<BicycleModel<double, Tyre>>>)
-// NOLINTEND(bugprone-macro-parentheses)
-
-VERIDYN_SIMULATE_ON(LinearTyre<double>);
-VERIDYN_SIMULATE_ON(FialaTyre<double>);
-VERIDYN_SIMULATE_ON(SimpleMagicFormulaTyre<double>);
-VERIDYN_SIMULATE_ON(MagicFormulaTyre<double>);
-
+#define VERIDYN_SIMULATE_ON(Tyre)                                                                                   \
+  template VehicleTrajectory simulate(const FourWheelModel<double, Tyre<double>>&, Driver&, const Road*,            \
+                                      const SimulationOptions&, Progress&,                                          \
+                                      std::span<const ModelChange<FourWheelModel<double, Tyre<double>>>>);          \
+  template VehicleTrajectory simulate(const BicycleModel<double, Tyre<double>>&, Driver&, const SimulationOptions&, \
+                                      Progress&, std::span<const ModelChange<BicycleModel<double, Tyre<double>>>>);
+VERIDYN_TYRE_LAWS(VERIDYN_SIMULATE_ON)
 #undef VERIDYN_SIMULATE_ON
 
 }  // namespace veridyn::vehicle

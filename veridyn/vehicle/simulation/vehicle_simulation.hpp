@@ -41,8 +41,7 @@ struct ModelChange {
 /// controls out of range (steer not within 90 deg, negative brake torque, NaN), naming the time. Does not allocate
 /// after the first step but for lift-offs beyond 64.
 ///
-/// Compiled for LinearTyre, FialaTyre, SimpleMagicFormulaTyre and MagicFormulaTyre of double; with another tyre include
-/// vehicle_simulation_loop.hpp.
+/// Compiled for the tyres of tyre_laws.hpp; with another tyre include vehicle_simulation_loop.hpp.
 template <typename Tyre>
 [[nodiscard]] VehicleTrajectory simulate(const FourWheelModel<double, Tyre>& model, Driver& driver, const Road* road,
                                          const SimulationOptions& options, Progress& progress,

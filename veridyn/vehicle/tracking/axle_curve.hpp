@@ -4,16 +4,15 @@
 #include <variant>
 
 #include "veridyn/vehicle/model/rolling_bicycle.hpp"
-#include "veridyn/vehicle/tyre/fiala_tyre.hpp"
-#include "veridyn/vehicle/tyre/linear_tyre.hpp"
-#include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
+#include "veridyn/vehicle/tyre/tyre_laws.hpp"
 
 namespace veridyn::vehicle {
 
-/// The rolling bicycle with any of the tyres that a drive is identified with.
-using AnyRollingBicycle =
-    std::variant<RollingBicycle<double, LinearTyre<double>>, RollingBicycle<double, FialaTyre<double>>,
-                 RollingBicycle<double, SimpleMagicFormulaTyre<double>>>;
+template <typename Tyre>
+using RollingBicycleOn = RollingBicycle<double, Tyre>;
+
+/// The rolling bicycle with any of the tyres that numbers describe, as those that a drive is identified with.
+using AnyRollingBicycle = AllTyresByNumbers::Variant<RollingBicycleOn>;
 
 /// What tyres of the same cornering stiffness C and no limit would push with, front and rear, at the slips at which
 /// those of the vehicle push with `force` [N]: C alpha(F). Where slip is more than twice F/C it is taken as twice: it

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "veridyn/core/constants.hpp"
@@ -79,10 +81,14 @@ AnyRollingBicycle tyres_of(const estimation::Estimate& estimate, const Estimated
   Vehicle start;
   start.parameters = model.vehicle;
   const Vehicle vehicle = estimated_vehicle(std::move(start), estimate.parameters, model.options);
-  if (const auto* tyres = std::get_if<AxleTyres<FialaTyre<double>>>(&vehicle.tyres)) return bicycle(*tyres);
-  if (const auto* tyres = std::get_if<AxleTyres<SimpleMagicFormulaTyre<double>>>(&vehicle.tyres))
-    return bicycle(*tyres);
-  return bicycle(tyres_by_numbers<LinearTyre<double>>(model.vehicle));
+  return std::visit(
+      [&]<typename Tyre>(const AxleTyres<Tyre>& tyres) {
+        if constexpr (TyreByNumbers<Tyre> && !std::is_same_v<Tyre, LinearTyre<double>>)
+          return bicycle(tyres);
+        else
+          return bicycle(tyres_by_numbers<LinearTyre<double>>(model.vehicle));
+      },
+      vehicle.tyres);
 }
 
 std::string described(const KnownBody& body) {

@@ -2,10 +2,7 @@
 
 #include <concepts>
 
-#include "veridyn/vehicle/tyre/fiala_tyre.hpp"
-#include "veridyn/vehicle/tyre/linear_tyre.hpp"
-#include "veridyn/vehicle/tyre/magic_formula_moment.hpp"
-#include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
+#include "veridyn/vehicle/tyre/tyre_laws.hpp"
 #include "veridyn/vehicle/tyre/wheel_arrays.hpp"
 
 namespace veridyn::vehicle {

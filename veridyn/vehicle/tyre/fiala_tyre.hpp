@@ -17,6 +17,10 @@ namespace veridyn::vehicle {
 /// numbers. Twice continuously differentiable away from zero slip; at zero slip the slope is continuous.
 template <typename Scalar>
 struct FialaTyre {
+  /// As a study names it, and whether it needs the friction coefficient `mu` there.
+  static constexpr std::string_view kStudyName = "fiala";
+  static constexpr bool kNeedsFriction = true;
+
   Scalar stiffness{60000.0};        ///< C [N/rad]
   Scalar slip_stiffness{100000.0};  ///< C_x [N per unit of slip ratio]
   Scalar mu{1.0};                   ///< may be infinite: then the linear tyre
@@ -38,6 +42,11 @@ struct FialaTyre {
   }
 
   [[nodiscard]] Scalar cornering_stiffness(const Scalar& load) const { return load > 0.0 ? stiffness : Scalar(0.0); }
+
+  /// That of a vehicle whose forces and lengths are so many times as large.
+  [[nodiscard]] FialaTyre scaled(double force, double length) const {
+    return {stiffness * force, slip_stiffness * force, mu, pneumatic_trail * length};
+  }
 
   template <typename Other>
   [[nodiscard]] FialaTyre<Other> cast() const {

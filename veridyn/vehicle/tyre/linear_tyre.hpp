@@ -12,6 +12,10 @@ namespace veridyn::vehicle {
 /// linear bicycle model. The slope jumps at the circle.
 template <typename Scalar>
 struct LinearTyre {
+  /// As a study names it, and whether it needs the friction coefficient `mu` there.
+  static constexpr std::string_view kStudyName = "linear";
+  static constexpr bool kNeedsFriction = false;
+
   Scalar stiffness{60000.0};        ///< C [N/rad]
   Scalar slip_stiffness{100000.0};  ///< C_x [N per unit of slip ratio]
   Scalar mu{kInfinity};
@@ -31,6 +35,11 @@ struct LinearTyre {
   }
 
   [[nodiscard]] Scalar cornering_stiffness(const Scalar& /*load*/) const { return stiffness; }
+
+  /// That of a vehicle whose forces and lengths are so many times as large.
+  [[nodiscard]] LinearTyre scaled(double force, double length) const {
+    return {stiffness * force, slip_stiffness * force, mu, pneumatic_trail * length};
+  }
 };
 
 /// -t F_y [N m], whatever the slip.

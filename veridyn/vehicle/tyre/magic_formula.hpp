@@ -88,6 +88,17 @@ struct MagicFormulaTyre {
   /// slip): all shifts that do not come from camber, RBY3 and the sign terms of the lateral curvature are 0.
   [[nodiscard]] MagicFormulaTyre symmetric() const;
 
+  /// That of a vehicle whose forces and lengths are so many times as large: all coefficients of tyre files but the
+  /// nominal load and the radius are dimensionless.
+  [[nodiscard]] MagicFormulaTyre scaled(double force, double length) const {
+    MagicFormulaTyre tyre = *this;
+    tyre.coefficients.FNOMIN *= force;
+    tyre.coefficients.UNLOADED_RADIUS *= length;
+    tyre.range.load_min *= force;
+    tyre.range.load_max *= force;
+    return tyre;
+  }
+
   template <typename Other>
   [[nodiscard]] MagicFormulaTyre<Other> cast() const {
     return {coefficients.template cast<Other>(), range, combined_slip, mirrored};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 
 #include "veridyn/vehicle/tyre/fiala_tyre.hpp"
@@ -23,6 +24,10 @@ namespace veridyn::vehicle {
 /// = 2.9.
 template <typename Scalar>
 struct SimpleMagicFormulaTyre {
+  /// As a study names it, and whether it needs the friction coefficient `mu` there.
+  static constexpr std::string_view kStudyName = "magic formula";
+  static constexpr bool kNeedsFriction = true;
+
   Scalar stiffness{60000.0};        ///< K at the nominal load [N/rad]
   Scalar slip_stiffness{100000.0};  ///< K_x at the nominal load [N per unit of slip ratio]
   Scalar mu{1.0};                   ///< peak friction at the nominal load
@@ -54,6 +59,36 @@ struct SimpleMagicFormulaTyre {
   [[nodiscard]] Scalar cornering_stiffness(const Scalar& load) const {
     if (!(load > 0.0)) return Scalar(0.0);
     return stiffness * load_gain(Scalar(load / nominal_load));
+  }
+
+  /// That of a vehicle whose forces and lengths are so many times as large.
+  [[nodiscard]] SimpleMagicFormulaTyre scaled(double force, double length) const {
+    SimpleMagicFormulaTyre tyre = *this;
+    tyre.stiffness *= force;
+    tyre.slip_stiffness *= force;
+    tyre.nominal_load *= force;
+    tyre.pneumatic_trail *= length;
+    return tyre;
+  }
+
+  /// Its own numbers in a study.
+  [[nodiscard]] static constexpr auto study_keys() {
+    using Key = TyreKey<SimpleMagicFormulaTyre>;
+    return std::array{Key{.name = "C",
+                          .value = &SimpleMagicFormulaTyre::C,
+                          .meaning = "shape",
+                          .is_admissible = [](double value) { return value >= 1.0 && value < 2.0; },
+                          .otherwise = "is {:g}; must be from 1 to below 2"},
+                      Key{.name = "E",
+                          .value = &SimpleMagicFormulaTyre::E,
+                          .meaning = "curvature",
+                          .is_admissible = [](double value) { return value <= 1.0; },
+                          .otherwise = "is {:g}; must be at most 1"},
+                      Key{.name = "mu_load",
+                          .value = &SimpleMagicFormulaTyre::mu_load,
+                          .is_admissible = [](double value) { return value >= 0.0 && value < 1.0; },
+                          .otherwise = "must be from 0 to below 1"},
+                      Key{.name = "stiffness_saturation", .value = &SimpleMagicFormulaTyre::stiffness_saturation}};
   }
 
   template <typename Other>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <concepts>
+#include <string_view>
 
 namespace veridyn::vehicle {
 
@@ -26,6 +27,16 @@ template <typename Tyre, typename Scalar>
 concept TyreModel = requires(const Tyre& tyre, const Scalar& number) {
   { tyre.forces(number, number, number, number) } -> std::same_as<TyreForces<Scalar>>;
   { tyre.cornering_stiffness(number) } -> std::convertible_to<Scalar>;
+};
+
+/// A number of a tyre law's own that a study may give in `[subject.tyres]`, without a unit.
+template <typename Tyre>
+struct TyreKey {
+  std::string_view name;
+  double Tyre::*value;
+  std::string_view meaning = "";            ///< written behind it; may be empty
+  bool (*is_admissible)(double) = nullptr;  ///< null: any number is
+  std::string_view otherwise = "";          ///< what is said of an inadmissible one, a format of the value
 };
 
 }  // namespace veridyn::vehicle
