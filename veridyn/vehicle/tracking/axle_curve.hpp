@@ -8,6 +8,7 @@
 
 namespace veridyn::vehicle {
 
+/// The rolling bicycle on tyres of one kind.
 template <typename Tyre>
 using RollingBicycleOn = RollingBicycle<double, Tyre>;
 
