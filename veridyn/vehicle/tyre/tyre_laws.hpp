@@ -61,6 +61,7 @@ auto by_numbers(TyreList<Found...>, TyreList<Tyre, Rest...>) {
 
 }  // namespace internal
 
+// NOLINTNEXTLINE(bugprone-macro-parentheses): the name of a template takes none
 #define VERIDYN_NEXT_TYRE(Tyre) , Tyre<double>
 /// All tyre laws, of numbers without derivatives.
 using AllTyres = internal::TyresAfter<void VERIDYN_TYRE_LAWS(VERIDYN_NEXT_TYRE)>;
