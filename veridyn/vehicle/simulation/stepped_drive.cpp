@@ -293,6 +293,7 @@ recording::MotionSample SteppedDrive<Tyre>::motion(const Eigen::Vector3d& place)
   return recording::at_place(out, place);
 }
 
+// NOLINTNEXTLINE(bugprone-macro-parentheses): the name of a template takes none
 #define VERIDYN_STEP_ON(Tyre) template class SteppedDrive<Tyre<double>>;
 VERIDYN_TYRE_LAWS(VERIDYN_STEP_ON)
 #undef VERIDYN_STEP_ON

@@ -171,6 +171,7 @@ DriveEnd ended(const FourWheelState<double>& s, bool speed_varies) {
 
 }  // namespace internal
 
+// NOLINTBEGIN(bugprone-macro-parentheses): the name of a template takes none
 #define VERIDYN_SIMULATE_ON(Tyre)                                                                                   \
   template VehicleTrajectory simulate(const FourWheelModel<double, Tyre<double>>&, Driver&, const Road*,            \
                                       const SimulationOptions&, Progress&,                                          \
@@ -179,5 +180,6 @@ DriveEnd ended(const FourWheelState<double>& s, bool speed_varies) {
                                       Progress&, std::span<const ModelChange<BicycleModel<double, Tyre<double>>>>);
 VERIDYN_TYRE_LAWS(VERIDYN_SIMULATE_ON)
 #undef VERIDYN_SIMULATE_ON
+// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace veridyn::vehicle
