@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # tools/peers.sh COMMAND ...: runs a command of the virtual environment build/peers/venv, which holds what
-# bench/peers/requirements.txt lists and is made anew when that changes. Where no package index can be reached and there
+# bench/peers/requirements.txt lists and is rebuilt when that changes. Where no package index can be reached and there
 # is no environment yet, one line says so and nothing is run, which is no failure.
 set -euo pipefail
 cd "$(dirname "$0")/.."
