@@ -122,6 +122,7 @@ soak: setup ## long-running campaigns (label soak), coverage of intervals
 
 nightly: setup ## all that is too long for .ci/run: every test, module and check, an hour and more
 	$(MAKE) test
+	$(MAKE) peers
 	$(MAKE) long
 	$(MAKE) tidy
 	$(MAKE) asan

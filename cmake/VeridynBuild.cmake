@@ -88,7 +88,7 @@ endfunction()
 # veridyn_compile_together(TARGET)
 # In presets with CMAKE_UNITY_BUILD the sources of a folder are compiled together, as unity_FOLDER: what they include and the
 # templates that they share are paid once. A folder of fewer than three sources goes with the folder above it. Names in unnamed
-# namespaces must therefore differ within a module, which `make tidy` checks (tools/unnamed_names.mjs). The `dev` preset compiles
+# namespaces must therefore differ within a folder, which `make tidy` checks (tools/unnamed_names.mjs). The `dev` preset compiles
 # each source by itself.
 function(veridyn_compile_together target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
