@@ -66,6 +66,32 @@ class OurLog:
         return self.time[self.rows_with(topic)]
 
 
+class ChannelComparison:
+    """Every value of our channels against those of a peer."""
+
+    def __init__(self, ours):
+        self.ours = ours
+        self.compared, self.worst, self.missing = set(), 0.0, 0
+
+    def add(self, channel, found, expected):
+        """Both in SI; samples that are no numbers are so in both."""
+        expected = numpy.where(numpy.isfinite(expected), expected, numpy.nan)
+        count = self.ours.samples[channel]
+        assert count == len(expected), f"{channel}: {count} of {len(expected)} samples"
+        assert (numpy.isnan(found) == numpy.isnan(expected)).all(), f"{channel}: other samples are numbers"
+        self.missing += numpy.isnan(expected).sum()
+        size = numpy.maximum(numpy.abs(expected), 1e-12)
+        self.worst = max(self.worst, numpy.nanmax(numpy.abs(found - expected) / size, initial=0.0))
+        self.compared.add(channel)
+
+    def finish(self, name, comparison):
+        """All channels were compared, and agree within two roundings of each product."""
+        assert set(self.ours.units) - self.compared == set(), "channels that the peer does not have"
+        samples = sum(self.ours.samples[c] for c in self.compared)
+        assert samples > 0
+        comparison.within(f"{name}: {len(self.compared)} channels, {samples} values, relative", self.worst, 5e-16)
+
+
 def rows_of(time, stamps):
     """The rows of a table in which the stamps of one topic stand; both increase."""
     ticks, wanted = (numpy.rint(1e6 * numpy.asarray(t)).astype(numpy.int64) for t in (time, stamps))

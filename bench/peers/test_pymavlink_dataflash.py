@@ -11,7 +11,7 @@ import pytest
 from pymavlink import DFReader
 
 import made_logs
-from logs import OurLog, to_si
+from logs import ChannelComparison, OurLog, to_si
 from program import shared_file
 
 pytestmark = pytest.mark.peer("pymavlink")
@@ -84,7 +84,7 @@ def read(path):
 
 def compare(path, comparison):
     ours, (topics, scales) = OurLog(path), read(path)
-    compared, worst = set(), 0.0
+    channels = ChannelComparison(ours)
     for name, topic in topics.items():
         stamps = topic.column(0)
         order = numpy.argsort(stamps, kind="stable")
@@ -97,19 +97,8 @@ def compare(path, comparison):
             values = topic.column(i + 1)[order]
             if i < len(scale_of) and character not in SCALED_BY_FORMAT:
                 values = values * scale_of[i]
-            expected = to_si(values, ours.units[channel])
-            expected[~numpy.isfinite(expected)] = numpy.nan
-            found = ours.at(channel, stamps[order])
-            assert (numpy.isnan(found) == numpy.isnan(expected)).all(), f"{channel}: other samples are numbers"
-            assert ours.samples[channel] == len(stamps), f"{channel}: {ours.samples[channel]} of {len(stamps)} samples"
-            size = numpy.maximum(numpy.abs(expected), 1e-12)
-            worst = max(worst, numpy.nanmax(numpy.abs(found - expected) / size, initial=0.0))
-            compared.add(channel)
-    assert set(ours.units) - compared == set(), "channels that pymavlink does not have"
-    samples = sum(ours.samples[c] for c in compared)
-    assert samples > 0
-    # Two roundings of each product.
-    comparison.within(f"{path.name}: {len(compared)} channels, {samples} values, relative", worst, 5e-16)
+            channels.add(channel, ours.at(channel, stamps[order]), to_si(values, ours.units[channel]))
+    channels.finish(path.name, comparison)
 
 
 @pytest.mark.parametrize("name", ["center_0003.bin", "pymavlink_test.BIN", "test_log_pilot_position.BIN"])

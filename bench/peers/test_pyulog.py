@@ -8,7 +8,7 @@ import pytest
 from pyulog import ULog
 
 import made_logs
-from logs import OurLog, to_si
+from logs import ChannelComparison, OurLog, to_si
 from program import shared_file
 
 pytestmark = pytest.mark.peer("pyulog")
@@ -27,7 +27,7 @@ def scale_of(topic, field):
 
 def compare(path, comparison):
     ours, theirs = OurLog(path), ULog(str(path))
-    compared, worst = set(), 0.0
+    channels = ChannelComparison(ours)
     topics = collections.Counter(data.name for data in theirs.data_list)
     assert topics, "pyulog finds nothing"
     for data in theirs.data_list:
@@ -42,18 +42,8 @@ def compare(path, comparison):
             channel = f"{prefix}.{field}"
             assert channel in ours.units, f"{channel} is not read"
             values = raw[order].astype(float) * scale_of(data.name, field)
-            expected = to_si(values, ours.units[channel])
-            expected[~numpy.isfinite(expected)] = numpy.nan
-            found = ours.at(channel, stamps[order])
-            assert (numpy.isnan(found) == numpy.isnan(expected)).all(), f"{channel}: other samples are numbers"
-            assert ours.samples[channel] == len(order), f"{channel}: {ours.samples[channel]} of {len(order)} samples"
-            size = numpy.maximum(numpy.abs(expected), 1e-12)
-            worst = max(worst, numpy.nanmax(numpy.abs(found - expected) / size, initial=0.0))
-            compared.add(channel)
-    assert set(ours.units) - compared == set(), "channels that pyulog does not have"
-    samples = sum(ours.samples[c] for c in compared)
-    # Two roundings of each product.
-    comparison.within(f"{path.name}: {len(compared)} channels, {samples} values, relative", worst, 5e-16)
+            channels.add(channel, ours.at(channel, stamps[order]), to_si(values, ours.units[channel]))
+    channels.finish(path.name, comparison)
 
 
 @pytest.mark.parametrize("name", ["sample_log_small.ulg", "sample_appended_multiple.ulg"])
