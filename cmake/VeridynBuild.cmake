@@ -65,7 +65,8 @@ endfunction()
 veridyn_precompiled(
   veridyn_library_headers POSITION_INDEPENDENT
   LIBRARIES veridyn_build
-  HEADERS <fmt/format.h> <fmt/ranges.h> <Eigen/Dense> <algorithm> <filesystem> <functional> <map> <memory> <optional> <string> <vector>)
+  HEADERS <fmt/format.h> <fmt/ranges.h> <Eigen/Dense> <algorithm> <chrono> <complex> <filesystem> <functional> <map> <memory> <optional> <random>
+          <ranges> <span> <sstream> <string> <variant> <vector>)
 
 # veridyn_optimise(a.cpp ...)
 # Sources whose loops over small matrices have to be unrolled: -O3. The check

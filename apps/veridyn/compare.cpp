@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "apps/veridyn/console.hpp"
-#include "apps/veridyn/output_folder.hpp"
+#include "apps/veridyn/results/output_folder.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/estimation/estimate_comparison.hpp"
 #include "veridyn/io/results/estimate_json.hpp"

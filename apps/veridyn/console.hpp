@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "apps/veridyn/command.hpp"
-#include "apps/veridyn/summary.hpp"
+#include "apps/veridyn/results/summary.hpp"
 #include "veridyn/core/progress.hpp"
 
 namespace veridyn::app {

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "apps/veridyn/console.hpp"
-#include "apps/veridyn/cue_live.hpp"
 #include "apps/veridyn/domains.hpp"
-#include "apps/veridyn/output_folder.hpp"
+#include "apps/veridyn/live/cue_live.hpp"
+#include "apps/veridyn/results/output_folder.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/cueing/cueing_study.hpp"

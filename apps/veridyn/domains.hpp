@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/veridyn/command.hpp"
-#include "apps/veridyn/run_record.hpp"
+#include "apps/veridyn/results/run_record.hpp"
 #include "veridyn/core/study.hpp"
 
 namespace veridyn::app {

@@ -6,9 +6,9 @@
 #include <variant>
 
 #include "apps/veridyn/domains.hpp"
-#include "apps/veridyn/export_results.hpp"
-#include "apps/veridyn/output_folder.hpp"
-#include "apps/veridyn/study_tables.hpp"
+#include "apps/veridyn/results/export_results.hpp"
+#include "apps/veridyn/results/output_folder.hpp"
+#include "apps/veridyn/results/study_tables.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/progress.hpp"

@@ -5,13 +5,13 @@
 #include <optional>
 #include <utility>
 
-#include "apps/veridyn/aircraft_results.hpp"
-#include "apps/veridyn/checkpoint.hpp"
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/domains.hpp"
-#include "apps/veridyn/drive_results.hpp"
-#include "apps/veridyn/muscle_results.hpp"
-#include "apps/veridyn/output_folder.hpp"
+#include "apps/veridyn/results/aircraft_results.hpp"
+#include "apps/veridyn/results/checkpoint.hpp"
+#include "apps/veridyn/results/drive_results.hpp"
+#include "apps/veridyn/results/muscle_results.hpp"
+#include "apps/veridyn/results/output_folder.hpp"
 #include "apps/veridyn/work_progress.hpp"
 #include "veridyn/core/error.hpp"
 

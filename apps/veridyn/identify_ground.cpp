@@ -4,10 +4,10 @@
 #include <utility>
 #include <vector>
 
-#include "apps/veridyn/analysis_results.hpp"
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/domains.hpp"
-#include "apps/veridyn/output_folder.hpp"
+#include "apps/veridyn/results/analysis_results.hpp"
+#include "apps/veridyn/results/output_folder.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/aircraft/sensors/air_data_calibration.hpp"
 #include "veridyn/aircraft/sensors/swing_test.hpp"

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "apps/veridyn/console.hpp"
-#include "apps/veridyn/output_folder.hpp"
+#include "apps/veridyn/results/output_folder.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
 #include "veridyn/muscle/simulation/pose_table.hpp"
 #include "veridyn/muscle/study/model_check.hpp"

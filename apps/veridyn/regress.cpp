@@ -6,9 +6,9 @@
 #include <map>
 #include <optional>
 
-#include "apps/veridyn/analysis_results.hpp"
 #include "apps/veridyn/console.hpp"
-#include "apps/veridyn/output_folder.hpp"
+#include "apps/veridyn/results/analysis_results.hpp"
+#include "apps/veridyn/results/output_folder.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"

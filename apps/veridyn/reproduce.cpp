@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "apps/veridyn/console.hpp"
-#include "apps/veridyn/output_folder.hpp"
 #include "apps/veridyn/reproduce_studies.hpp"
+#include "apps/veridyn/results/output_folder.hpp"
 #include "apps/veridyn/version.hpp"
 #include "bench/reproduction/aircraft/reproduction.hpp"
 #include "bench/reproduction/report/aircraft_reproduction_report.hpp"

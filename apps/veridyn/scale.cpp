@@ -5,8 +5,8 @@
 
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/domains.hpp"
-#include "apps/veridyn/output_folder.hpp"
-#include "apps/veridyn/study_tables.hpp"
+#include "apps/veridyn/results/output_folder.hpp"
+#include "apps/veridyn/results/study_tables.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/estimation/judgement/subject_grades.hpp"
 #include "veridyn/io/tables/csv.hpp"

@@ -6,11 +6,11 @@
 #include <optional>
 #include <stdexcept>
 
-#include "apps/veridyn/checkpoint.hpp"
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/domains.hpp"
-#include "apps/veridyn/output_folder.hpp"
-#include "apps/veridyn/response_results.hpp"
+#include "apps/veridyn/results/checkpoint.hpp"
+#include "apps/veridyn/results/output_folder.hpp"
+#include "apps/veridyn/results/response_results.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/io/results/indices_csv.hpp"
 #include "veridyn/muscle/sensitivity/sensitivity_tables.hpp"

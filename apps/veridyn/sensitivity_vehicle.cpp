@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "apps/veridyn/domains.hpp"
-#include "apps/veridyn/response_results.hpp"
-#include "apps/veridyn/study_tables.hpp"
+#include "apps/veridyn/results/response_results.hpp"
+#include "apps/veridyn/results/study_tables.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/vehicle/drive_sensitivity.hpp"
 

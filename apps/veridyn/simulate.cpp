@@ -4,8 +4,8 @@
 
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/domains.hpp"
-#include "apps/veridyn/output_folder.hpp"
-#include "apps/veridyn/study_tables.hpp"
+#include "apps/veridyn/results/output_folder.hpp"
+#include "apps/veridyn/results/study_tables.hpp"
 #include "veridyn/aircraft/simulation/simulate_study.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/io/tables/csv.hpp"

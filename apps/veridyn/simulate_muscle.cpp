@@ -7,7 +7,7 @@
 
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/domains.hpp"
-#include "apps/veridyn/output_folder.hpp"
+#include "apps/veridyn/results/output_folder.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/index.hpp"

@@ -6,11 +6,11 @@
 #include <chrono>
 #include <cmath>
 
-#include "apps/veridyn/analysis_results.hpp"
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/domains.hpp"
-#include "apps/veridyn/follow.hpp"
-#include "apps/veridyn/output_folder.hpp"
+#include "apps/veridyn/live/follow.hpp"
+#include "apps/veridyn/results/analysis_results.hpp"
+#include "apps/veridyn/results/output_folder.hpp"
 #include "apps/veridyn/version.hpp"
 #include "apps/veridyn/work_progress.hpp"
 #include "veridyn/aircraft/track_flight.hpp"

@@ -3,11 +3,11 @@
 
 #include <optional>
 
-#include "apps/veridyn/analysis_results.hpp"
 #include "apps/veridyn/console.hpp"
-#include "apps/veridyn/drive_results.hpp"
-#include "apps/veridyn/follow.hpp"
-#include "apps/veridyn/study_tables.hpp"
+#include "apps/veridyn/live/follow.hpp"
+#include "apps/veridyn/results/analysis_results.hpp"
+#include "apps/veridyn/results/drive_results.hpp"
+#include "apps/veridyn/results/study_tables.hpp"
 #include "apps/veridyn/version.hpp"
 #include "apps/veridyn/work_progress.hpp"
 #include "veridyn/io/results/estimate_json.hpp"

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "apps/veridyn/domains.hpp"
-#include "apps/veridyn/output_folder.hpp"
+#include "apps/veridyn/results/output_folder.hpp"
 #include "veridyn/core/progress.hpp"
 
 namespace veridyn::app {

@@ -7,8 +7,6 @@
 #include <variant>
 #include <vector>
 
-#include "veridyn/core/constants.hpp"
-
 namespace veridyn::io {
 
 /// Texts of a log column, one after the other in one piece of memory.
@@ -51,65 +49,22 @@ class Column {
   explicit Column(Values values) : storage_(std::move(values)) {}
 
   [[nodiscard]] bool is_text() const { return std::holds_alternative<TextColumn>(storage_); }
-  [[nodiscard]] std::size_t size() const {
-    return std::visit([](const auto& values) { return values.size(); }, storage_);
-  }
+  [[nodiscard]] std::size_t size() const;
   /// The number as logged, without any scale; NaN for a text.
-  [[nodiscard]] double number(std::size_t i) const {
-    return std::visit(
-        [i](const auto& values) {
-          if constexpr (std::is_same_v<std::decay_t<decltype(values)>, TextColumn>) {
-            return kNaN;
-          } else {
-            return static_cast<double>(values[i]);
-          }
-        },
-        storage_);
-  }
+  [[nodiscard]] double number(std::size_t i) const;
   /// The text; empty for a number.
   [[nodiscard]] std::string_view text(std::size_t i) const {
     const auto* texts = std::get_if<TextColumn>(&storage_);
     return texts != nullptr ? (*texts)[i] : std::string_view();
   }
   /// scale * number + offset for every row. Empty for a text column.
-  [[nodiscard]] std::vector<double> numbers(double scale = 1.0, double offset = 0.0) const {
-    return std::visit(
-        [&](const auto& values) {
-          std::vector<double> result;
-          if constexpr (!std::is_same_v<std::decay_t<decltype(values)>, TextColumn>) {
-            result.resize(values.size());
-            for (std::size_t i = 0; i < values.size(); ++i) {
-              result[i] = scale * static_cast<double>(values[i]) + offset;
-            }
-          }
-          return result;
-        },
-        storage_);
-  }
+  [[nodiscard]] std::vector<double> numbers(double scale = 1.0, double offset = 0.0) const;
   /// The numbers of these rows.
-  [[nodiscard]] Column picked(const std::vector<std::uint64_t>& rows) const {
-    std::vector<double> chosen;
-    chosen.reserve(rows.size());
-    for (const std::uint64_t row : rows) chosen.push_back(number(row));
-    return Column(std::move(chosen));
-  }
+  [[nodiscard]] Column picked(const std::vector<std::uint64_t>& rows) const;
   /// Keeps rows [begin, end).
-  void keep(std::size_t begin, std::size_t end) {
-    std::visit(
-        [&](auto& values) {
-          if constexpr (std::is_same_v<std::decay_t<decltype(values)>, TextColumn>) {
-            values = values.part(begin, end);
-          } else {
-            values.resize(end);
-            values.erase(values.begin(), values.begin() + begin);
-          }
-        },
-        storage_);
-  }
+  void keep(std::size_t begin, std::size_t end);
   /// Keeps the first `count` rows.
-  void shorten(std::size_t count) {
-    std::visit([count](auto& values) { values.resize(count); }, storage_);
-  }
+  void shorten(std::size_t count);
   [[nodiscard]] const Storage& storage() const { return storage_; }
   [[nodiscard]] Storage& storage() { return storage_; }
 

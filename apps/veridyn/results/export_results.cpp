@@ -1,0 +1,31 @@
+#include "apps/veridyn/results/export_results.hpp"
+
+#include <fmt/format.h>
+
+#include "apps/veridyn/console.hpp"
+#include "veridyn/estimation/judgement/judgement.hpp"
+#include "veridyn/io/results/estimate_json.hpp"
+
+namespace veridyn::app {
+
+std::optional<estimation::Estimate> given_estimate(const StudyRun& run) {
+  const std::string& file = run.arguments.text("--estimate-file");
+  if (file.empty()) return std::nullopt;
+  return io::read_estimate(file);
+}
+
+bool is_graded(const std::optional<estimation::Estimate>& estimate) { return estimate && !estimate->evidence.empty(); }
+
+void publish_export(const StudyRun& run, OutputFolder& folder, std::vector<std::filesystem::path> inputs,
+                    const std::optional<estimation::Estimate>& estimate, const std::string& note) {
+  const std::vector<std::string> files = folder.files();
+  RunRecord record = run.record(0, std::move(inputs));
+  if (estimate) record.inputs.emplace_back(run.arguments.text("--estimate-file"));
+  folder.publish(record, run.options(), Summary::object({{"folder", folder.path().string()}, {"files", files}}));
+  for (const std::string& name : files)
+    print_line(run.options(), fmt::format("wrote {}", (folder.path() / name).string()));
+  if (!note.empty()) print_line(run.options(), note);
+  if (is_graded(estimate)) print_line(run.options(), estimation::sentence_of(*estimate));
+}
+
+}  // namespace veridyn::app

@@ -1,0 +1,112 @@
+// What the commands on a person's tasks share: writing and printing their analysis.
+#include "apps/veridyn/results/muscle_results.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "apps/veridyn/console.hpp"
+#include "apps/veridyn/results/analysis_results.hpp"
+#include "apps/veridyn/results/posterior_results.hpp"
+#include "apps/veridyn/results/profile_results.hpp"
+#include "apps/veridyn/version.hpp"
+#include "veridyn/core/index.hpp"
+#include "veridyn/io/results/estimate_json.hpp"
+#include "veridyn/io/tables/csv_text.hpp"
+#include "veridyn/report/document/html.hpp"
+#include "veridyn/report/muscle_task_report.hpp"
+
+namespace veridyn::app {
+namespace {
+
+using namespace veridyn::muscle;
+
+std::string tasks_csv(const MuscleAnalysis& analysis) {
+  std::string text = "task,use,nrmse_before,nrmse_after,rmse_before,rmse_after,range,reserve_share\n";
+  for (const TaskOutcome& t : analysis.tasks) {
+    text += fmt::format("{},{},{},{},{},{},{},{}\n", io::csv_text(t.name), t.hold_out ? "unseen" : "trained",
+                        io::csv_number(t.before.nrmse), io::csv_number(t.after.nrmse), io::csv_number(t.before.rmse),
+                        io::csv_number(t.after.rmse), io::csv_number(t.before.range), io::csv_number(t.reserve_share));
+  }
+  return text;
+}
+
+/// Every evaluation of the search.
+std::string evaluations_csv(const MuscleAnalysis& analysis) {
+  std::string text = "evaluation,kind,seconds,end";
+  for (const TaskOutcome& t : analysis.tasks)
+    if (!t.hold_out) text += "," + io::csv_text("NRMSE " + t.name);
+  for (const estimation::Parameter& p : analysis.estimate.parameters) text += "," + io::csv_text(p.name);
+  text += "\n";
+  for (std::size_t i = 0; i < analysis.evaluations.size(); ++i) {
+    const estimation::ModelEvaluation& e = analysis.evaluations[i];
+    const bool failed = std::ranges::count(e.failed, 0) < signed_index(e.failed.size());
+    text += fmt::format("{},{},{:.3g},{}", i + 1, e.derivatives ? "derivatives" : "values", e.seconds,
+                        failed ? "failed" : "done");
+    for (const double nrmse : e.misfit) text += "," + io::csv_number(nrmse);
+    for (const double value : e.theta) text += "," + io::csv_number(value);
+    text += "\n";
+  }
+  return text;
+}
+
+Summary summary_of_tasks(const MuscleAnalysis& analysis, const std::filesystem::path& folder) {
+  Summary s;
+  s["folder"] = folder.string();
+  s["verdict"] = to_string(analysis.groups.front().verdict);
+  s["grades"] = grades_summary(analysis.estimate.judgement);
+  s["reason"] = analysis.groups.front().reason;
+  s["seconds"] = analysis.result.seconds;
+  s["words"] = Summary::object();
+  for (std::size_t i = 0; i < analysis.result.verdicts.size(); ++i)
+    s["words"][analysis.estimate.parameters[i].name] = to_string(analysis.result.verdicts[i]);
+  s["null_directions"] = analysis.result.null_directions;
+  if (!analysis.profiles.profiles.empty()) s["profiles"] = profiles_summary(analysis.profiles);
+  if (analysis.posterior.usable()) s["posterior"] = posterior_summary(analysis.posterior);
+  s["estimate"] = Summary::json(io::to_json(analysis.estimate));
+  return s;
+}
+
+}  // namespace
+
+void publish_muscles(const StudyRun& run, OutputFolder& folder, const TaskStudy& study, const MuscleAnalysis& analysis,
+                     const std::vector<std::filesystem::path>& more_inputs) {
+  const CommonOptions& options = run.options();
+  const bool validation_only = run.command == "validate";
+  folder.write("estimate.json", io::to_json(analysis.estimate));
+  folder.write("parameters.csv", parameters_csv(analysis.estimate));
+  folder.write("tasks.csv", tasks_csv(analysis));
+  if (!validation_only) folder.write("evaluations.csv", evaluations_csv(analysis));
+  write_profiles(folder, analysis.profiles, analysis.estimate.parameters);
+  write_posterior(folder, analysis.posterior);
+  if (!validation_only && estimation::usable(analysis.groups.front().verdict))
+    folder.write("model.osim", study.subject.file->text_with(analysis.identified));
+  folder.write("report.html",
+               report::to_html(report::muscle_task_report(study, analysis, program_name(), validation_only)));
+  RunRecord record = run.record(study.seed, study.inputs);
+  record.inputs.insert(record.inputs.end(), more_inputs.begin(), more_inputs.end());
+  folder.publish(record, options, summary_of_tasks(analysis, folder.path()));
+
+  print_judgement(options, analysis.estimate);
+  for (std::size_t i = 0; i < analysis.result.verdicts.size(); ++i) {
+    const estimation::Parameter& p = analysis.estimate.parameters[i];
+    print_line(options, fmt::format("  {:<40} {:>10.5g} +- {:<9.2g} {:<5} {}", p.name, p.value, p.sigma, p.unit,
+                                    to_string(analysis.result.verdicts[i])));
+  }
+  for (const std::string& direction : analysis.result.null_directions)
+    print_line(options, "  left to the priors: " + direction);
+  print_profiles(options, analysis.profiles, 40);
+  print_posterior(options, analysis.posterior);
+  for (const estimation::NextMeasurement& next : analysis.estimate.next_measurements)
+    print_line(options,
+               fmt::format("  next      {:<48} widest interval +-{:.2g} % ({}) -> {:.2g} % ({})", next.name,
+                           100.0 * next.share_now, next.widest_now, 100.0 * next.share_then, next.widest_then));
+  for (const TaskOutcome& t : analysis.tasks)
+    print_line(options, fmt::format("  {:<9} {:<48} NRMSE {:.3g} -> {:.3g}", t.hold_out ? "unseen" : "trained", t.name,
+                                    t.before.nrmse, t.after.nrmse));
+  for (const std::string& warning : analysis.estimate.warnings) print_line(options, "warning: " + warning);
+  print_line(options, analysis.estimate.verdict);
+  print_line(options, fmt::format("report: {}", (folder.path() / "report.html").string()));
+}
+
+}  // namespace veridyn::app

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "apps/veridyn/domains.hpp"
+#include "apps/veridyn/results/output_folder.hpp"
+#include "veridyn/muscle/study/identify_muscles.hpp"
+
+namespace veridyn::app {
+
+/// Writes, publishes and prints the identification or validation of a person's muscles.
+/// @param more_inputs of the run record, beyond the study and what it names
+void publish_muscles(const StudyRun& run, OutputFolder& folder, const muscle::TaskStudy& study,
+                     const muscle::MuscleAnalysis& analysis,
+                     const std::vector<std::filesystem::path>& more_inputs = {});
+
+}  // namespace veridyn::app

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "apps/veridyn/console.hpp"
+#include "apps/veridyn/results/output_folder.hpp"
+#include "apps/veridyn/results/summary.hpp"
+#include "veridyn/core/recording.hpp"
+#include "veridyn/estimation/open_loop/open_loop.hpp"
+
+namespace veridyn::app {
+
+/// What was integrated open loop: `open_loop_scores.csv`, and the states of each group, whose windows differ:
+/// `open_loop_longitudinal.csv`, or `open_loop.csv` of the only one. Nothing where nothing was.
+void write_open_loop(OutputFolder& folder, const estimation::OpenLoop& open_loop, Frame frame);
+/// What was done, and a line a state.
+void print_open_loop(const CommonOptions& options, const estimation::OpenLoop& open_loop);
+/// The scores by state.
+[[nodiscard]] Summary open_loop_summary(const estimation::OpenLoop& open_loop);
+
+}  // namespace veridyn::app

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <span>
+
+#include "apps/veridyn/command.hpp"
+#include "apps/veridyn/results/output_folder.hpp"
+#include "apps/veridyn/results/summary.hpp"
+#include "veridyn/estimation/parameter.hpp"
+#include "veridyn/estimation/uncertainty/profile_likelihood.hpp"
+
+namespace veridyn::app {
+
+/// profiles.csv: every fit, with all parameters at it; profile_intervals.csv: the intervals, an end that is not closed
+/// empty, and why. Nothing without profiles.
+/// @param parameters  in the model's order
+void write_profiles(OutputFolder& folder, const estimation::ProfileResult& profiles,
+                    std::span<const estimation::Parameter> parameters);
+
+/// The intervals for the summary, by parameter.
+[[nodiscard]] Summary profiles_summary(const estimation::ProfileResult& profiles);
+
+/// A line for each profile, names in so many columns; why there is none.
+void print_profiles(const CommonOptions& options, const estimation::ProfileResult& profiles, int columns);
+
+}  // namespace veridyn::app
