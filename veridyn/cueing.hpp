@@ -3,8 +3,8 @@
 /// The motion of a vehicle on a motion platform, and what its driver feels.
 ///
 ///     cueing::read_study(study, progress)         // read: platform, algorithms, a recorded or simulated drive
-///     cueing::cue(drive, progress)                // all algorithms on the drive: motion of the platform, scores,
-///     tuning cueing::difference(a, b, ...)               // of two scores, with its interval
+///     cueing::cue(drive, progress)                // all algorithms on the drive: motion of the platform, scores
+///     cueing::difference(a, b, ...)               // of two scores, with its interval
 ///     cueing::built_in_platform("three_axis")     // or Platform::read
 ///     cueing::CueingChain                         // algorithm, guard and platform, one sample at a time
 ///

@@ -5,9 +5,10 @@
 ///     estimation::compare(data)                   // a linear regression by all methods, and which is recommended
 ///     estimation::RegressionTracker               // the same on line, with forgetting and an alarm at changes
 ///     estimation::output_error(model, measured)   // any simulated model (ParametricModel) against what was measured
-///     estimation::ExtendedKalmanFilter            // states of a model, from sensors at any rate;
-///     FixedIntervalSmoother estimation::particle_swarm, pattern_search  // where only values are known and each is
-///     expensive estimation::response_indices                // which input moves which result
+///     estimation::ExtendedKalmanFilter            // states of a model, from sensors at any rate
+///     estimation::FixedIntervalSmoother           // the same with what came later
+///     estimation::particle_swarm, pattern_search  // where only values are known, each of them expensive
+///     estimation::response_indices                // which input moves which result
 ///     estimation::compare_estimates               // do estimates agree within their error bars?
 ///
 /// What an identification delivers, whatever its domain, is an `Estimate` (parameters, covariance, verdict, evidence);

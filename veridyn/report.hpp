@@ -3,9 +3,8 @@
 /// Results as one self-contained HTML file.
 ///
 ///     report::identification_report(study, analysis, context)  // of a flight, as a Document
-///     report::drive_report(study, analysis, context)           // of a drive; muscle_report, cueing_report,
-///     live_report report::to_html(document)                                // the page; a Document of one's own works
-///     as well
+///     report::drive_report(study, analysis, context)           // of a drive; muscle_report, cueing_report ...
+///     report::to_html(document)                                // the page; also of a Document of your own
 ///
 /// Component `report`.
 
