@@ -10,35 +10,62 @@
 #include "picture.hpp"
 #include "veridyn/live.hpp"
 
+namespace {
+
+constexpr const char* kStudy = R"(
+[cue]
+algorithms = ["optimal"]
+[platform]
+subject = "three_axis"
+[live]
+telemetry = "127.0.0.1:4123"
+packet = "veridyn"
+platform = "127.0.0.1:5123"
+signs = "before"
+[subject]
+kind = "vehicle"
+builtin = "reference"
+[drive]
+model = "four-wheel"
+manoeuvre = "continuous sine"
+speed = "70 km/h"
+amplitude = "1.2 deg"
+frequency = "0.25 Hz"
+periods = 14
+duration = 60
+longitudinal = true
+torque_time = [0, 3, 4, 8, 9, 13, 14, 18, 19, 23, 24, 28, 29, 60]
+drive_torque = [300, 300, 900, 900, 0, 0, 900, 900, 0, 0, 900, 900, 300, 300]
+brake_torque = [0, 0, 0, 0, 600, 600, 0, 0, 600, 600, 0, 0, 0, 0]
+)";
+
+// Beside the rig, which it lets go once the telemetry's signs, axes and units are seen to be right. A rig that runs by
+// the clock leaves this to another thread.
+class SignWatch {
+ public:
+  void add(const veridyn::live::Telemetry& telemetry) { new_.push_back(telemetry.sample); }
+  // Looks once a second.
+  void look(double time, veridyn::live::LiveRig& rig) {
+    if (known_ || time < next_) return;
+    next_ = time + 1.0;
+    checker_.add(new_);
+    new_.clear();
+    known_ = checker_.check().kind == veridyn::live::SignVerdict::Kind::kRight;
+    if (known_) rig.request(veridyn::live::OperatorRequest::kSignsRight);
+  }
+
+ private:
+  veridyn::live::SignChecker checker_;
+  std::vector<veridyn::recording::MotionSample> new_;
+  double next_ = 1.0;
+  bool known_ = false;
+};
+
+}  // namespace
+
 int main() try {
   using namespace veridyn;
-  const Study study = Study::parse(R"(
-    [cue]
-    algorithms = ["optimal"]
-    [platform]
-    subject = "three_axis"
-    [live]
-    telemetry = "127.0.0.1:4123"
-    packet = "veridyn"
-    platform = "127.0.0.1:5123"
-    signs = "before"
-    [subject]
-    kind = "vehicle"
-    builtin = "reference"
-    [drive]
-    model = "four-wheel"
-    manoeuvre = "continuous sine"
-    speed = "70 km/h"
-    amplitude = "1.2 deg"
-    frequency = "0.25 Hz"
-    periods = 14
-    duration = 60
-    longitudinal = true
-    torque_time = [0, 3, 4, 8, 9, 13, 14, 18, 19, 23, 24, 28, 29, 60]
-    drive_torque = [300, 300, 900, 900, 0, 0, 900, 900, 0, 0, 900, 900, 300, 300]
-    brake_torque = [0, 0, 0, 0, 600, 600, 0, 0, 600, 600, 0, 0, 0, 0]
-  )",
-                                   "example 11");
+  const Study study = Study::parse(kStudy, "example 11");
   Progress silent;
   const live::LiveStudy rig_study = live::read_live_study(study);
   live::VirtualVehicle car(cueing::read_study(study, silent).vehicle, {.jitter = 0.008, .loss = 0.01});
@@ -49,10 +76,7 @@ int main() try {
   const live::Sender car_address{0x7f000001, 1}, rig_address{0x7f000001, 2}, platform_address{0x7f000001, 3};
   constexpr double kLost = 35.0, kBack = 40.0, kEnd = 55.0;  // [s]; between the first two no packet arrives
   const live::Nanoseconds period = live::nanoseconds(1.0 / rig_study.options.rate);
-  live::SignChecker signs;  // beside the rig: it may take its time
-  bool signs_known = false;
-  std::vector<recording::MotionSample> motions;
-  double next_check = 1.0;
+  SignWatch signs;
   std::vector<double> time, force, told, reached, share;
   live::RigState state = rig.state();
   for (live::Nanoseconds now = period; now < live::nanoseconds(kEnd); now += period) {
@@ -62,15 +86,9 @@ int main() try {
       const auto packet = car.next();
       if (!packet || (t > kLost && t < kBack)) continue;
       const auto motion = rig.take(live::LinkOf::kTelemetry, {*packet, car_address, sent});
-      if (motion) motions.push_back(motion->sample);
+      if (motion) signs.add(*motion);
     }
-    if (!signs_known && t > next_check) {
-      next_check += 1.0;
-      signs.add(motions);
-      motions.clear();
-      signs_known = signs.check().kind == live::SignVerdict::Kind::kRight;
-      if (signs_known) rig.request(live::OperatorRequest::kSignsRight);
-    }
+    signs.look(t, rig);
     const live::RigStep& step = rig.step(now);
     platform.step(now);
     const auto answer = platform.take({{step.order.data(), step.order.size()}, rig_address, now});
