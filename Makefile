@@ -7,7 +7,7 @@ JOBS   ?= $(shell nproc)
 SHELL  := /bin/bash
 space  := $(subst ,, )
 
-.PHONY: help setup build demo test long docs format format-check tidy asan asan-readers tsan bench peers bench-peers fuzz soak nightly gcc install clean
+.PHONY: help setup build demo test long docs pictures format format-check tidy asan asan-readers tsan bench peers bench-peers fuzz soak nightly gcc install clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1|/' | column -t -s '|'
@@ -45,6 +45,12 @@ endef
 
 docs: setup ## API reference from the headers: build/docs/html/index.html
 	@node tools/docs.mjs build/docs
+
+pictures: setup ## run the numbered examples and draw what they computed: docs/images/examples
+	cmake --preset test --log-level=WARNING
+	cmake --build $(TESTED) -j $(JOBS) --target numbered_examples
+	ctest --test-dir $(TESTED) --output-on-failure -j $(JOBS) -R '^example_[0-9]'
+	node tools/example_pictures.mjs $(TESTED)/examples docs/images/examples
 
 format: ## reformat sources and documents
 	git ls-files -co --exclude-standard '*.cpp' '*.hpp' | xargs clang-format -i

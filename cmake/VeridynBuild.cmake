@@ -114,14 +114,37 @@ function(veridyn_compile_together target)
   endforeach()
 endfunction()
 
+# veridyn_public_headers(OUT FACE.hpp ...)
+# What is installed: the FACEs (veridyn/aircraft.hpp ...) and, in turn, all that they include of ours, as paths below the root. Read
+# from the #include lines while CMake configures, which it does again when one of these headers has changed.
+function(veridyn_public_headers out)
+  set(public "")
+  set(to_read ${ARGN})
+  while(to_read)
+    list(POP_FRONT to_read header)
+    if(NOT header IN_LIST public)
+      list(APPEND public ${header})
+      file(STRINGS ${PROJECT_SOURCE_DIR}/${header} included REGEX "^#include \"veridyn/")
+      list(TRANSFORM included REPLACE "^#include \"([^\"]+)\".*" "\\1")
+      list(APPEND to_read ${included})
+    endif()
+  endwhile()
+  set(files ${public})
+  list(TRANSFORM files PREPEND ${PROJECT_SOURCE_DIR}/)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${files})
+  set(${out} ${public} PARENT_SCOPE)
+endfunction()
+
 # veridyn_module(NAME [DEPENDS Veridyn::core ...] [PRIVATE lib ...] [SOURCES generated.cpp ...] [WITHOUT a.cpp ...])
-# A module: static library veridyn_NAME, alias Veridyn::NAME, of all sources and headers in its folder and the folders below;
-# headers are installed with their folders.
+# A module: static library veridyn_NAME, alias Veridyn::NAME, of all sources in its folder and the folders below. Its face
+# veridyn/NAME.hpp and those of its headers that are public are installed with their folders (veridyn_public_headers).
 function(veridyn_module name)
   cmake_parse_arguments(ARG "" "" "DEPENDS;PRIVATE;SOURCES;WITHOUT" ${ARGN})
   set(target veridyn_${name})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp)
-  file(GLOB_RECURSE headers CONFIGURE_DEPENDS *.hpp)
+  set(headers ${VERIDYN_PUBLIC_HEADERS})
+  list(FILTER headers INCLUDE REGEX "^veridyn/${name}(/|\\.hpp$)")
+  list(TRANSFORM headers PREPEND ${PROJECT_SOURCE_DIR}/)
   list(REMOVE_ITEM sources ${ARG_WITHOUT})
   add_library(${target} ${sources} ${ARG_SOURCES})
   add_library(Veridyn::${name} ALIAS ${target})

@@ -2,7 +2,7 @@
 //
 //   example_01_read_a_log [FILE]      ArduPilot .bin or .log, PX4 .ulg, MATLAB .mat, CSV
 //
-// Without a file it writes a small CSV first and reads that.
+// Without a file it writes a small one first, 01_read_a_log.csv, and reads that.
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -10,9 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "veridyn/core/recording.hpp"
-#include "veridyn/io/read.hpp"
-#include "veridyn/io/tables/csv.hpp"
+#include "veridyn/io.hpp"
 
 namespace {
 
@@ -30,7 +28,7 @@ std::filesystem::path write_small_recording() {
   recording.frame = Frame::kFrd;
   recording.add(make_channel("gyro_y", "rad/s", stamps, rate));
   recording.add(make_channel("elevator", "rad", stamps, deflection));
-  const auto path = std::filesystem::temp_directory_path() / "veridyn_example_01.csv";
+  const std::filesystem::path path = "01_read_a_log.csv";
   io::write_csv(recording, path);
   return path;
 }

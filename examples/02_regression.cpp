@@ -4,9 +4,12 @@
 // gyro. More data do not cure the bias of ordinary least squares: it pulls the estimates towards zero.
 #include <cmath>
 #include <cstdio>
+#include <string>
+#include <vector>
 
-#include "veridyn/estimation/regression/regression.hpp"
-#include "veridyn/numerics/random.hpp"
+#include "picture.hpp"
+#include "veridyn/estimation.hpp"
+#include "veridyn/numerics.hpp"
 
 int main() {
   using namespace veridyn;
@@ -32,13 +35,23 @@ int main() {
       Eigen::Vector4d(0.0, sigma_beta * sigma_beta, sigma_r * sigma_r, sigma_z * sigma_z).asDiagonal();
 
   const estimation::RegressionComparison comparison = estimation::compare(data);
+  std::vector<std::string> labels;
+  std::vector<double> value, low, high, true_value;
   std::printf("%-10s %22s %22s\n", "", "Cn_beta (true 0.25)", "Cn_r (true -1)");
   for (const estimation::RegressionEstimate& e : comparison.estimates) {
     if (!e.usable()) continue;
     std::printf("%-10s %12.4f +- %.4f %15.4f +- %.4f\n", std::string(estimation::to_string(e.method)).c_str(),
                 e.parameters[1].value, 1.96 * e.parameters[1].sigma, e.parameters[2].value,
                 1.96 * e.parameters[2].sigma);
+    for (const std::size_t i : {std::size_t{1}, std::size_t{2}}) {
+      labels.push_back(e.parameters[i].name + " by " + std::string(estimation::to_string(e.method)));
+      value.push_back(e.parameters[i].value);
+      low.push_back(e.parameters[i].low95);
+      high.push_back(e.parameters[i].high95);
+      true_value.push_back(truth(static_cast<Eigen::Index>(i)));
+    }
   }
+  picture::write("02_regression.csv", {{"value", value}, {"low", low}, {"high", high}, {"true", true_value}}, labels);
   std::printf("recommended: %s\n", comparison.reason.c_str());
 
   const auto* ols = comparison.find(estimation::Method::kOls);

@@ -7,9 +7,8 @@
 #include <numbers>
 #include <vector>
 
-#include "veridyn/numerics/filters.hpp"
-#include "veridyn/numerics/noise.hpp"
-#include "veridyn/numerics/random.hpp"
+#include "picture.hpp"
+#include "veridyn/numerics.hpp"
 
 int main() {
   using namespace veridyn::numerics;
@@ -28,6 +27,7 @@ int main() {
   const std::vector<double> filtered = filter(gyro, differentiator, Edges::kNan);
 
   double squares = 0.0, plain = 0.0;
+  std::vector<double> time, by_difference, by_filter, exact;
   std::size_t count = 0;
   for (std::size_t k = 1; k + 1 < gyro.size(); ++k) {
     if (!std::isfinite(filtered[k])) continue;  // the full kernel does not fit there
@@ -35,7 +35,15 @@ int main() {
     squares += std::pow(filtered[k] - truth[k], 2);
     plain += std::pow(difference - truth[k], 2);
     ++count;
+    time.push_back(static_cast<double>(k) / kRate_Hz);
+    by_difference.push_back(difference);
+    by_filter.push_back(filtered[k]);
+    exact.push_back(truth[k]);
   }
+  picture::write("03_filter_and_differentiate.csv", {{"time[s]", time},
+                                                     {"central_difference[rad/s^2]", by_difference},
+                                                     {"filter[rad/s^2]", by_filter},
+                                                     {"truth[rad/s^2]", exact}});
   const double error = std::sqrt(squares / static_cast<double>(count));
   const double predicted = kNoise_radps * std::sqrt(differentiator.noise_gain());
   std::printf("noise found above the band: %.4f rad/s (put in: %.4f)\n", measurement_noise(gyro, kRate_Hz, 10.0).sd,

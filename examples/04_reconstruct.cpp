@@ -6,10 +6,10 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <vector>
 
-#include "veridyn/aircraft/reconstruction/reconstruct.hpp"
-#include "veridyn/aircraft/simulation/simulate_study.hpp"
-#include "veridyn/core/study.hpp"
+#include "picture.hpp"
+#include "veridyn/aircraft.hpp"
 
 int main() try {
   using namespace veridyn;
@@ -41,15 +41,25 @@ int main() try {
   const Channel& truth = flight.truth.at("alpha");
   double squares = 0.0;
   std::size_t inside = 0, count = 0;
+  std::vector<double> time, estimate, low, high, exact;
   for (std::size_t k = 0; k < alpha.size(); ++k) {
     const auto later = std::lower_bound(truth.times().begin(), truth.times().end(), alpha.times()[k] - 1e-6);
     if (later == truth.times().end()) continue;
-    const double error = alpha.value[k] - truth.value[static_cast<std::size_t>(later - truth.times().begin())];
+    const double true_alpha = truth.value[static_cast<std::size_t>(later - truth.times().begin())];
+    const double error = alpha.value[k] - true_alpha;
     squares += error * error;
     inside += std::abs(error) < 1.96 * sigma.value[k] ? 1 : 0;
     ++count;
+    time.push_back(alpha.times()[k]);
+    estimate.push_back(alpha.value[k] / kDegree);
+    low.push_back((alpha.value[k] - 1.96 * sigma.value[k]) / kDegree);
+    high.push_back((alpha.value[k] + 1.96 * sigma.value[k]) / kDegree);
+    exact.push_back(true_alpha / kDegree);
   }
-  const double rms_deg = std::sqrt(squares / static_cast<double>(count)) * 180.0 / M_PI;
+  picture::write(
+      "04_reconstruct.csv",
+      {{"time[s]", time}, {"alpha[deg]", estimate}, {"low[deg]", low}, {"high[deg]", high}, {"truth[deg]", exact}});
+  const double rms_deg = std::sqrt(squares / static_cast<double>(count)) / kDegree;
   std::printf("alpha: error %.2f deg RMS, %.0f %% of it inside the 95 %% band\n", rms_deg,
               100.0 * static_cast<double>(inside) / static_cast<double>(count));
   for (const aircraft::QuantityReport& q : result.quantities) std::printf("  %s\n", q.statement.c_str());

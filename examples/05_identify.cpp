@@ -5,10 +5,10 @@
 #include <cstdio>
 #include <exception>
 #include <string>
+#include <vector>
 
-#include "veridyn/aircraft/aircraft_study.hpp"
-#include "veridyn/aircraft/identification/identified_estimate.hpp"
-#include "veridyn/core/constants.hpp"
+#include "picture.hpp"
+#include "veridyn/aircraft.hpp"
 
 int main() try {
   using namespace veridyn;
@@ -26,6 +26,8 @@ int main() try {
   const aircraft::FlightStudy flight = aircraft::read_study(study, silent);
   const aircraft::FlightAnalysis analysis = aircraft::identify(flight, silent);
 
+  std::vector<std::string> labels;
+  std::vector<double> value, low, high, true_value;
   for (const aircraft::CoefficientResult& coefficient : analysis.coefficients) {
     std::printf("%-12s %s\n", std::string(estimation::to_string(coefficient.verdict)).c_str(),
                 coefficient.reason.c_str());
@@ -33,11 +35,17 @@ int main() try {
     if (!coefficient.chosen || truth == nullptr) continue;
     for (std::size_t i = 0; i < coefficient.model.size(); ++i) {
       const estimation::Parameter& p = coefficient.chosen->parameters[i];
+      const double exact = truth->value_of(coefficient.model.terms[i].expression).value_or(kNaN);
       std::printf("    %-10s %9.4f  [%9.4f, %9.4f]  true %9.4f  %s\n", p.name.c_str(), p.value, p.low95, p.high95,
-                  truth->value_of(coefficient.model.terms[i].expression).value_or(kNaN),
-                  std::string(estimation::to_string(p.status)).c_str());
+                  exact, std::string(estimation::to_string(p.status)).c_str());
+      labels.push_back(p.name);
+      value.push_back(p.value);
+      low.push_back(p.low95);
+      high.push_back(p.high95);
+      true_value.push_back(exact);
     }
   }
+  picture::write("05_identify.csv", {{"value", value}, {"low", low}, {"high", high}, {"true", true_value}}, labels);
   for (const aircraft::PredictedQuantity& q : analysis.validation.quantities) {
     std::printf("hold-out: %s MAE %.3g %s, Theil %.3f\n", q.name.c_str(), q.fit.mae, q.unit.c_str(), q.fit.theil);
   }

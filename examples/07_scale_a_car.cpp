@@ -1,9 +1,11 @@
 // A car at one fifth of its size: what it has to weigh, how stiff its tyres have to be, and whether the one that was
 // built is similar.
 #include <cstdio>
+#include <string>
+#include <vector>
 
-#include "veridyn/vehicle/model/builtin_vehicles.hpp"
-#include "veridyn/vehicle/similarity/similarity.hpp"
+#include "picture.hpp"
+#include "veridyn/vehicle.hpp"
 
 int main() {
   using namespace veridyn::vehicle;
@@ -19,6 +21,13 @@ int main() {
   const SimilarityReport report =
       compare(prototype, SimilaritySubject{.parameters = built.parameters, .speed = built.speed});
   std::printf("the one that was built: %s\n", report.message().c_str());
+  std::vector<std::string> labels;
+  std::vector<double> mismatch;
+  for (const GroupComparison& group : report.groups) {
+    labels.push_back(group.parameter + ": " + group.formula);
+    mismatch.push_back(group.mismatch_percent);
+  }
+  picture::write("07_scale_a_car.csv", {{"mismatch[%]", mismatch}}, labels);
   for (const GroupComparison& group : report.mismatches()) {
     std::printf("  %-4s %-16s %8.5f %8.5f  %+5.1f %%  %s\n", group.parameter.c_str(), group.formula.c_str(),
                 group.prototype, group.model, group.mismatch_percent, group.affects.c_str());

@@ -1,17 +1,12 @@
 // From a drive to the tyres of a car: simulate, add the errors of production sensors, identify, and see whether the
 // intervals hold the truth. With a recording of your own only the first part changes: read_study.
-#include <cmath>
 #include <cstdio>
+#include <map>
+#include <string>
+#include <vector>
 
-#include "veridyn/core/progress.hpp"
-#include "veridyn/vehicle/identification/signals/drive_log.hpp"
-#include "veridyn/vehicle/identification/signals/drive_segments.hpp"
-#include "veridyn/vehicle/identification/vehicle_identification.hpp"
-#include "veridyn/vehicle/manoeuvre/manoeuvre.hpp"
-#include "veridyn/vehicle/model/bicycle_model.hpp"
-#include "veridyn/vehicle/simulation/drive_sensors.hpp"
-#include "veridyn/vehicle/simulation/vehicle_simulation.hpp"
-#include "veridyn/vehicle/tyre/linear_tyre.hpp"
+#include "picture.hpp"
+#include "veridyn/vehicle.hpp"
 
 int main() {
   using namespace veridyn;
@@ -48,6 +43,9 @@ int main() {
   options.mass_sigma = 15.0;
   const VehicleIdentification result = identify_parameters({signals, segments, start, signal_options, options}, silent);
 
+  const std::map<std::string, double> known = {{"C_f", truth.C_f}, {"C_r", truth.C_r}, {"I_z", truth.I_z}};
+  std::vector<std::string> labels;
+  std::vector<double> value, low, high, true_value;
   for (const VehicleMethod method : {VehicleMethod::kGtls, VehicleMethod::kOutputError}) {
     const VehicleEstimate* estimate = result.find(method);
     if (estimate == nullptr || !estimate->usable) continue;
@@ -55,8 +53,16 @@ int main() {
     for (const auto& p : estimate->parameters) {
       std::printf("  %-20s %12.6g  [%.6g, %.6g] %s, %s\n", p.name.c_str(), p.value, p.low95, p.high95, p.unit.c_str(),
                   std::string(estimation::to_string(p.status)).c_str());
+      if (!known.contains(p.name)) continue;
+      labels.push_back(p.name + " by " + std::string(to_string(method)));
+      value.push_back(p.value);
+      low.push_back(p.low95);
+      high.push_back(p.high95);
+      true_value.push_back(known.at(p.name));
     }
   }
+  picture::write("08_identify_a_car.csv", {{"value", value}, {"low", low}, {"high", high}, {"true", true_value}},
+                 labels);
   std::printf("\n%s\n", result.reason.c_str());
   const estimation::PredictedQuantity* yaw_rate = result.validation.find("yaw_rate");
   const bool holds =

@@ -1,6 +1,7 @@
-// The API reference, build/docs/html: Doxygen over the headers of the library, with a page for each module and sub-module; the
-// headers of bench/reproduction are checked like them and have no page, since they are not installed. The sentence of a folder
-// comes from the lists of docs/architecture.md, that of a header from its own comments, so nothing is said twice.
+// The API reference, build/docs/html: Doxygen over the headers of the library, with a page for each module and sub-module, and the
+// way through a module at its face (veridyn/aircraft.hpp). The headers of bench/reproduction are checked like them and have no
+// page, since they are not installed. The sentence of a folder comes from the lists of docs/architecture.md, that of a header
+// from its own comments, so nothing is said twice.
 // Fails where a folder has no sentence or a sentence no folder, where Doxygen warns, where a type or a free function of the
 // modules in `complete` has no comment (but `to_string`, whose name says all), and where a document names a file or links
 // to a heading that does not exist.
@@ -21,7 +22,9 @@ const architecture = 'docs/architecture.md';
 
 const files = execFileSync('git', ['ls-files', '-co', '--exclude-standard', 'veridyn', 'bench/reproduction'], { encoding: 'utf8' }).split('\n');
 const headers = files.filter((file) => file.endsWith('.hpp')).sort();
-const folders = new Set(headers.map((header) => dirname(header)));
+/// The face of a module, veridyn/aircraft.hpp: what its users include.
+const isFace = (header) => dirname(header) === 'veridyn';
+const folders = new Set(headers.filter((header) => !isFace(header)).map((header) => dirname(header)));
 for (const folder of [...folders]) {
   if (dirname(folder) !== 'veridyn') folders.add(dirname(folder));
 }
@@ -67,6 +70,12 @@ function headerSentence(header) {
   return first;
 }
 
+/// The comment at the head of a face after its first sentence: the way through its module.
+function wayThrough(face) {
+  const comment = readFileSync(face, 'utf8').split('\n').filter((line) => line.startsWith('///')).map((line) => line.slice(4));
+  return comment.slice(comment.indexOf('')).map((line) => ` *  ${plain(line)}\n`).join('');
+}
+
 /// Links of the documents and paths between backquotes that lead nowhere.
 function deadReferences() {
   const dead = [];
@@ -105,7 +114,8 @@ const plain = (text) => text.replaceAll('\\', '\\\\').replaceAll('@', '\\@').rep
 let pages = '';
 for (const header of headers) {
   const sentence = headerSentence(header);
-  if (installed(header)) pages += `/** \\file ${header}\n *  \\brief ${plain(sentence ?? '')}\n */\n`;
+  const more = isFace(header) ? ` *\n${wayThrough(header)}` : '';
+  if (installed(header)) pages += `/** \\file ${header}\n *  \\brief ${plain(sentence ?? '')}\n${more} */\n`;
   if (!sentence) problems.push(`${header}: has no comment that says what it is`);
 }
 for (const folder of [...folders].filter(installed).sort()) {
@@ -114,6 +124,7 @@ for (const folder of [...folders].filter(installed).sort()) {
   const id = folder.replaceAll('/', '_');
   pages += `/** \\dir ${folder}\n *  \\brief ${plain(sentence)}\n */\n`;
   pages += `/** \\page ${id} ${folder.slice('veridyn/'.length)}\n *  ${plain(sentence)}\n *\n`;
+  if (existsSync(`${folder}.hpp`)) pages += ` *  Its users include \\ref ${folder}.hpp.\n *\n`;
   for (const header of inside) pages += ` *  - \\ref ${header} "${basename(header)}": ${plain(headerSentence(header) ?? '')}\n`;
   for (const below of [...folders].sort()) {
     if (dirname(below) === folder) pages += ` *  - \\subpage ${below.replaceAll('/', '_')} "${basename(below)}": ${plain(sentences.get(below) ?? '')}\n`;

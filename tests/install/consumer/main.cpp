@@ -1,7 +1,6 @@
 // What a user of the installed library writes first: a built-in aircraft and a recording.
 #include <cstdio>
-#include <veridyn/aircraft/model/builtin_subjects.hpp>
-#include <veridyn/io/tables/csv.hpp>
+#include <veridyn/aircraft.hpp>
 
 int main() {
   const veridyn::aircraft::Subject subject = veridyn::aircraft::builtin_subject("unatrap");
