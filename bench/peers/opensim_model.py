@@ -57,6 +57,20 @@ class OpenSimModel:
             q[:, led] = [function.calcValue(opensim.Vector(1, float(x))) for x in q[:, leader]]
         return q
 
+    def moving_with_couplers(self, q, qdot, qddot):
+        """The same of states, with speeds and accelerations."""
+        q, qdot, qddot = self.with_couplers(q), numpy.array(qdot), numpy.array(qddot)
+        once, twice = opensim.StdVectorInt([0]), opensim.StdVectorInt([0, 0])
+        for coupler in self.couplers():
+            led = self.names.index(coupler.getDependentCoordinateName())
+            leader = self.names.index(coupler.getIndependentCoordinateNames().get(0))
+            function = coupler.getFunction()
+            at = [opensim.Vector(1, float(x)) for x in q[:, leader]]
+            slope, curvature = (numpy.array([function.calcDerivative(d, x) for x in at]) for d in (once, twice))
+            qdot[:, led] = slope * qdot[:, leader]
+            qddot[:, led] = slope * qddot[:, leader] + curvature * qdot[:, leader] ** 2
+        return q, qdot, qddot
+
     def pose(self, q):
         for c, value in zip(self.coordinates, q, strict=True):
             c.setValue(self.state, float(value), False)
@@ -64,6 +78,14 @@ class OpenSimModel:
 
     def lengths(self):
         return numpy.array([m.getLength(self.state) for m in self.muscles])
+
+    def wrap_points(self):
+        """How many points of each muscle's path lie on wrap objects, in the pose: two on each that it touches."""
+        counts = []
+        for m in self.muscles:
+            path = m.getGeometryPath().getCurrentPath(self.state)
+            counts.append(sum(path.get(i).getConcreteClassName() == "PathWrapPoint" for i in range(path.getSize())))
+        return counts
 
     def moment_arms(self):
         """Muscles by coordinates: the work of the tension, as OpenSim defines them [m]."""
