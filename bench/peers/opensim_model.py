@@ -121,35 +121,45 @@ class OpenSimModel:
         return {name: c.getDefaultValue() for name, c in zip(self.names, self.coordinates, strict=True)}
 
 
-def prescribe(model, steps):
-    """A controller of held excitations; steps are (time, {muscle: excitation}), the first of them at 0."""
+def constant(value):
+    return opensim.Constant(value)
+
+
+def held(steps):
+    """The values of (time, value) until the next; the first at 0."""
+    function = opensim.PiecewiseConstantFunction()
+    for time, value in steps:
+        function.addPoint(time, value)
+    return function
+
+
+def sine(amplitude, rate_rad_s, phase, mean):
+    return opensim.Sine(amplitude, rate_rad_s, phase, mean)
+
+
+def prescribe(model, excitations):
+    """A controller of excitations, which are OpenSim functions of time by muscle."""
     controller = opensim.PrescribedController()
     controller.setName("excitations")
     for muscle in model.muscles:
         controller.addActuator(muscle)
-        name = muscle.getName()
-        if len(steps) == 1:
-            function = opensim.Constant(steps[0][1][name])
-        else:
-            function = opensim.PiecewiseConstantFunction()
-            for time, values in steps:
-                function.addPoint(time, values[name])
-        controller.prescribeControlForActuator(name, function)
+        controller.prescribeControlForActuator(muscle.getName(), excitations[muscle.getName()])
     model.model.addController(controller)
     model.refresh()
 
 
-def simulate(model, pose, steps, time, accuracy=1e-8):
+def simulate(model, pose, excitations, time, accuracy=1e-8):
     """A forward simulation from rest in a pose, activations at the first excitations and fibres in equilibrium.
 
     Columns by the names of coordinates, and of each muscle its activation, fibre length and tendon force."""
-    prescribe(model, steps)
+    at_start = {name: f.calcValue(opensim.Vector(1, 0.0)) for name, f in excitations.items()}
+    prescribe(model, excitations)
     state = model.model.initSystem()
     for c, value in zip(model.coordinates, pose, strict=True):
         c.setValue(state, float(value), False)
         c.setSpeedValue(state, 0.0)
     for muscle in model.muscles:
-        muscle.setActivation(state, steps[0][1][muscle.getName()])
+        muscle.setActivation(state, at_start[muscle.getName()])
     model.model.equilibrateMuscles(state)
     manager = opensim.Manager(model.model)
     manager.setIntegratorAccuracy(accuracy)
