@@ -197,10 +197,10 @@ def random_states(model, count, seed):
 
 def read_storage(path):
     """Columns of an OpenSim storage file by name."""
-    lines = path.read_text().splitlines()
+    lines = [line for line in path.read_text().splitlines() if line.strip()]
     end = lines.index("endheader")
     names = lines[end + 1].split("\t")
-    table = numpy.array([[float(cell) for cell in line.split("\t")] for line in lines[end + 2 :] if line.strip()])
+    table = numpy.array([[float(cell) for cell in line.split("\t")] for line in lines[end + 2 :]])
     return dict(zip((name.strip() for name in names), table.T, strict=True))
 
 
