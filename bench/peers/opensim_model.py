@@ -196,12 +196,12 @@ def random_states(model, count, seed):
 
 
 def read_storage(path):
-    """Columns of an OpenSim storage file by name."""
-    lines = [line for line in path.read_text().splitlines() if line.strip()]
-    end = lines.index("endheader")
-    names = lines[end + 1].split("\t")
-    table = numpy.array([[float(cell) for cell in line.split("\t")] for line in lines[end + 2 :]])
-    return dict(zip((name.strip() for name in names), table.T, strict=True))
+    """Columns of an OpenSim storage file by name. The names may go over several lines (states of CMCTool)."""
+    lines = path.read_text().splitlines()
+    rows = [line.split() for line in lines[lines.index("endheader") + 1 :] if line.strip()]
+    first = next(i for i, row in enumerate(rows) if row[0][0] in "-.0123456789")
+    names = [name for row in rows[:first] for name in row]
+    return dict(zip(names, numpy.array(rows[first:], dtype=float).T, strict=True))
 
 
 def write_motion(path, columns):
@@ -252,3 +252,47 @@ def static_optimization(path, motion, folder, reserves, physiology=True, begin=0
     for coordinate, force in reserves.items():
         activations[f"{coordinate}_reserve"] *= force
     return activations
+
+
+def computed_muscle_control(path, motion, folder, end):
+    """OpenSim's CMCTool from 0 on, with windows of 10 ms, gains of 100 and 20 and reserves of 1 N m on every coordinate:
+    columns of its states, at its integrator's steps from 0.03 s on."""
+    model = opensim.Model(str(path))
+    model.initSystem()
+    coordinates = [model.getCoordinateSet().get(i).getName() for i in range(model.getCoordinateSet().getSize())]
+    tasks = opensim.CMC_TaskSet()
+    for coordinate in coordinates:
+        reserve = opensim.CoordinateActuator(coordinate)
+        reserve.setName(f"{coordinate}_reserve")
+        reserve.setOptimalForce(1.0)
+        reserve.setMinControl(-1e3)
+        reserve.setMaxControl(1e3)
+        model.addForce(reserve)
+        task = opensim.CMC_Joint()
+        task.setName(coordinate)
+        task.setCoordinateName(coordinate)
+        task.setActive(True, False, False)
+        for put, value in ((task.setWeight, 1.0), (task.setKP, 100.0), (task.setKV, 20.0), (task.setKA, 1.0)):
+            put(value, 1.0, 1.0)
+        tasks.cloneAndAppend(task)
+    model.finalizeConnections()
+    model.printToXML(str(folder / "model.osim"))
+    tasks.printToXML(str(folder / "tasks.xml"))
+    tool = opensim.CMCTool()
+    tool.setName("peer")
+    tool.setModelFilename(str(folder / "model.osim"))
+    tool.setTaskSetFileName(str(folder / "tasks.xml"))
+    tool.setDesiredKinematicsFileName(str(motion))
+    tool.setLowpassCutoffFrequency(-1)
+    tool.setInitialTime(0.0)
+    # Its results end a window before.
+    tool.setFinalTime(end + 0.02)
+    tool.setTimeWindow(0.01)
+    tool.setUseFastTarget(True)
+    tool.setSolveForEquilibrium(True)
+    tool.setErrorTolerance(1e-5)
+    tool.setResultsDir(str(folder))
+    tool.printToXML(str(folder / "setup.xml"))
+    tool = opensim.CMCTool(str(folder / "setup.xml"))
+    assert tool.run()
+    return read_storage(folder / "peer_states.sto")
