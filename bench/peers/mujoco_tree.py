@@ -1,8 +1,8 @@
 """A mechanism with strings over round objects, written twice: as an OpenSim model and for MuJoCo.
 
 Both describe the same thing in their own words: a torso on three axes, one after the other, an arm on a pin with a rod
-that slides in it, a leg on another pin; oblique joint frames, mass centres off the joints, full inertia tensors; strings
-from bone to bone, two of them over a sphere or a cylinder on the way."""
+that slides in it, a leg on another pin; oblique joint frames, mass centres off the joints, full inertia tensors;
+strings from bone to bone, two of them over a sphere or a cylinder on the way."""
 
 import dataclasses
 
@@ -90,7 +90,8 @@ def osim_object(name, _, shape, place, angles, radius):
 
 
 def osim_joint(body):
-    coordinates = "".join(f'<Coordinate name="{name}"><clamped>false</clamped></Coordinate>' for name, _, _ in body.joints)
+    names = [name for name, _, _ in body.joints]
+    coordinates = "".join(f'<Coordinate name="{name}"><clamped>false</clamped></Coordinate>' for name in names)
     axes = ""
     for word, kind in (("rotation", "hinge"), ("translation", "slide")):
         moving = [(name, axis) for name, joint_kind, axis in body.joints if joint_kind == kind]

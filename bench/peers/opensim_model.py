@@ -255,8 +255,8 @@ def static_optimization(path, motion, folder, reserves, physiology=True, begin=0
 
 
 def computed_muscle_control(path, motion, folder, end):
-    """OpenSim's CMCTool from 0 on, with windows of 10 ms, gains of 100 and 20 and reserves of 1 N m on every coordinate:
-    columns of its states, at its integrator's steps from 0.03 s on."""
+    """OpenSim's CMCTool from 0 on, with windows of 10 ms, gains of 100 and 20, reserves of 1 N m everywhere: columns of
+    its states, at its integrator's steps from 0.03 s on."""
     model = opensim.Model(str(path))
     model.initSystem()
     coordinates = [model.getCoordinateSet().get(i).getName() for i in range(model.getCoordinateSet().getSize())]

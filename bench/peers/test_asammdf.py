@@ -1,5 +1,5 @@
-"""ASAM MDF through asammdf, which the program recommends where it refuses such a file: what asammdf exports from it must
-be read with the values that asammdf finds in it."""
+"""ASAM MDF through asammdf, which the program recommends where it refuses such a file: what asammdf exports from it
+must be read with the values that asammdf finds in it."""
 
 import numpy
 import pytest

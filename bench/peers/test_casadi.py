@@ -2,6 +2,7 @@
 goes. Moment arms, strengths and the forces that the motion needs are the program's and the model file's: the optimum
 alone is compared."""
 
+import os
 import re
 import subprocess
 import sys
@@ -82,7 +83,10 @@ def test_activations_are_those_of_ipopt(exponent, tmp_path, comparison):
     }
     numpy.savez(tmp_path / "problems.npz", matrix=matrix, wanted=wanted, exponent=exponent, **limits)
     script = Path(__file__).with_name("casadi_optimum.py")
-    subprocess.run([sys.executable, script, tmp_path / "problems.npz", tmp_path / "results.npz"], check=True)
+    # OpenSim, where it is loaded, has put its own libraries before CasADi's.
+    environment = {name: value for name, value in os.environ.items() if name != "LD_LIBRARY_PATH"}
+    command = [sys.executable, script, tmp_path / "problems.npz", tmp_path / "results.npz"]
+    subprocess.run(command, check=True, env=environment)
     theirs = numpy.load(tmp_path / "results.npz")["controls"]
 
     activations = numpy.array([muscles[f"{m}_activation"] for m in strength]).T

@@ -13,8 +13,8 @@ from program import read_csv, run_study, shared_file
 pytestmark = pytest.mark.peer("opensim")
 
 MUSCLES = ["TRIlong", "TRIlat", "TRImed", "BIClong", "BICshort", "BRA"]
-# Shoulder and elbow at the start [deg]: motions in which OpenSim's paths have no jumps, the shoulder stays between -16.4
-# and 29.5 deg.
+# Shoulder and elbow at the start [deg]: motions in which OpenSim's paths have no jumps, the shoulder stays between
+# -16.4 and 29.5 deg.
 STARTS = {"constant": (2.5, 30.0), "step": (10.0, 30.0), "sines": (0.0, 40.0)}
 EXCITATION = 0.05
 FROM_0_2_S = [0.05, 0.5, 0.5, 0.4, 0.4, 0.4]
@@ -36,8 +36,8 @@ r_elbow_flex = "{elbow} deg"
 
 
 def excitations(scenario, folder):
-    """What [motion] of a study says of them, and the same as OpenSim's functions by muscle. A file has sines at steps of 0.25 ms,
-    with lines between them: 1e-8 off at most."""
+    """What [motion] of a study says of them, and the same as OpenSim's functions by muscle. A file has sines at steps
+    of 0.25 ms, with lines between them: 1e-7 off at most."""
     text = f"excitation = {{default = {EXCITATION}}}\n"
     if scenario == "constant":
         return text, {name: constant(EXCITATION) for name in MUSCLES}

@@ -52,7 +52,7 @@ TAUT = [
     Known("BIClong", -78.1, -76.0, LENGTH, 1.1e-2, "beside a spike of OpenSim's length; its work is ours"),
     Known("BIClong", 29.5, 29.7, 8.8e-2, 5e-2, "OpenSim's path takes the other side of the ellipsoid"),
     Known(
-        "BIClong", 31.3, 91.15, 1.7e-3, 2e-3, "a point lies in the humeral head: OpenSim drops the wrap, ours lifts", True
+        "BIClong", 31.3, 91.15, 1.7e-3, 2e-3, "a point is in the humeral head: OpenSim drops the wrap, ours lifts", True
     ),
 ]
 # With OpenSim's own construction, and its work as moment arm.
