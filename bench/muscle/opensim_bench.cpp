@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "tests/muscle/arm26_scenarios.hpp"
+#include "bench/muscle/arm26_scenarios.hpp"
 #include "tests/support/folders.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/muscle/osim/osim_reader.hpp"

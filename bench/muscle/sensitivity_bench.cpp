@@ -7,7 +7,7 @@
 #include <ctime>
 #include <filesystem>
 
-#include "tests/muscle/arm26_scenarios.hpp"
+#include "bench/muscle/arm26_scenarios.hpp"
 #include "tests/support/folders.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/muscle/identification/muscle_parametric_model.hpp"

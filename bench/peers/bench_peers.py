@@ -27,7 +27,7 @@ import test_jsbsim_flight as jsbsim_flight
 import test_opensim_forward as forward
 import test_opensim_static_optimization as static
 from jsbsim_aircraft import JsbsimAircraft
-from opensim_model import OpenSimModel, random_states, simulate, static_optimization, write_motion
+from opensim_model import OpenSimModel, constant, random_states, simulate, static_optimization, write_motion
 from program import SHARED, read_csv, run_study, veridyn, write_csv
 
 RUNS = 5
@@ -77,14 +77,15 @@ def poses(name, count, folder):
 
 def forward_arm(folder):
     path = OPENSIM / "arm26.osim"
-    (shoulder, elbow), _, after = forward.SCENARIOS["step"]
-    steps = [(0.0, dict.fromkeys(forward.MUSCLES, 0.05)), (0.2, dict(zip(forward.MUSCLES, after, strict=True)))]
+    shoulder, elbow = forward.STARTS["step"]
     rows = numpy.arange(201) / 200.0
-    study = forward.STUDY.format(model=path, paths="exact", shoulder=shoulder, elbow=elbow) + forward.step_of(after)
+    text, _ = forward.excitations("step", folder)
+    study = forward.STUDY.format(model=path, paths="exact", shoulder=shoulder, elbow=elbow, excitation=text)
     study = study.replace("accuracy = 1e-8", "accuracy = 1e-5")
 
     def peer():
-        simulate(OpenSimModel(path), numpy.radians([shoulder, elbow]), steps, rows, accuracy=1e-5)
+        _, functions = forward.excitations("step", folder)
+        simulate(OpenSimModel(path), numpy.radians([shoulder, elbow]), functions, rows, accuracy=1e-5)
 
     return theirs(peer), ours(lambda: run_study(study, folder))
 
@@ -92,7 +93,7 @@ def forward_arm(folder):
 def forward_gait(folder):
     path = OPENSIM / "gait2392_thelen2003muscle.osim"
     model = OpenSimModel(path)
-    steps = [(0.0, dict.fromkeys([m.getName() for m in model.muscles], 0.1))]
+    excitations = {m.getName(): constant(0.1) for m in model.muscles}
     rows = numpy.arange(41) / 200.0
     study = f"""
 [subject]
@@ -106,7 +107,7 @@ default = 0.1
 """
 
     def peer():
-        simulate(OpenSimModel(path), list(model.default_pose().values()), steps, rows, accuracy=1e-5)
+        simulate(OpenSimModel(path), list(model.default_pose().values()), excitations, rows, accuracy=1e-5)
 
     return theirs(peer), ours(lambda: run_study(study, folder))
 

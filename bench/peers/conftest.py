@@ -12,6 +12,9 @@ NAMES = {
     "pymavlink": "pymavlink",
     "pyulog": "pyulog",
     "commonroad-vehicle-models": "CommonRoad vehicle models",
+    "mujoco": "MuJoCo",
+    "asammdf": "asammdf",
+    "casadi": "CasADi",
 }
 FIGURES = pytest.StashKey[list]()
 

@@ -57,6 +57,20 @@ class OpenSimModel:
             q[:, led] = [function.calcValue(opensim.Vector(1, float(x))) for x in q[:, leader]]
         return q
 
+    def moving_with_couplers(self, q, qdot, qddot):
+        """The same of states, with speeds and accelerations."""
+        q, qdot, qddot = self.with_couplers(q), numpy.array(qdot), numpy.array(qddot)
+        once, twice = opensim.StdVectorInt([0]), opensim.StdVectorInt([0, 0])
+        for coupler in self.couplers():
+            led = self.names.index(coupler.getDependentCoordinateName())
+            leader = self.names.index(coupler.getIndependentCoordinateNames().get(0))
+            function = coupler.getFunction()
+            at = [opensim.Vector(1, float(x)) for x in q[:, leader]]
+            slope, curvature = (numpy.array([function.calcDerivative(d, x) for x in at]) for d in (once, twice))
+            qdot[:, led] = slope * qdot[:, leader]
+            qddot[:, led] = slope * qddot[:, leader] + curvature * qdot[:, leader] ** 2
+        return q, qdot, qddot
+
     def pose(self, q):
         for c, value in zip(self.coordinates, q, strict=True):
             c.setValue(self.state, float(value), False)
@@ -64,6 +78,14 @@ class OpenSimModel:
 
     def lengths(self):
         return numpy.array([m.getLength(self.state) for m in self.muscles])
+
+    def wrap_points(self):
+        """How many points of each muscle's path lie on wrap objects, in the pose: two on each that it touches."""
+        counts = []
+        for m in self.muscles:
+            path = m.getGeometryPath().getCurrentPath(self.state)
+            counts.append(sum(path.get(i).getConcreteClassName() == "PathWrapPoint" for i in range(path.getSize())))
+        return counts
 
     def moment_arms(self):
         """Muscles by coordinates: the work of the tension, as OpenSim defines them [m]."""
@@ -99,35 +121,45 @@ class OpenSimModel:
         return {name: c.getDefaultValue() for name, c in zip(self.names, self.coordinates, strict=True)}
 
 
-def prescribe(model, steps):
-    """A controller of held excitations; steps are (time, {muscle: excitation}), the first of them at 0."""
+def constant(value):
+    return opensim.Constant(value)
+
+
+def held(steps):
+    """The values of (time, value) until the next; the first at 0."""
+    function = opensim.PiecewiseConstantFunction()
+    for time, value in steps:
+        function.addPoint(time, value)
+    return function
+
+
+def sine(amplitude, rate_rad_s, phase, mean):
+    return opensim.Sine(amplitude, rate_rad_s, phase, mean)
+
+
+def prescribe(model, excitations):
+    """A controller of excitations, which are OpenSim functions of time by muscle."""
     controller = opensim.PrescribedController()
     controller.setName("excitations")
     for muscle in model.muscles:
         controller.addActuator(muscle)
-        name = muscle.getName()
-        if len(steps) == 1:
-            function = opensim.Constant(steps[0][1][name])
-        else:
-            function = opensim.PiecewiseConstantFunction()
-            for time, values in steps:
-                function.addPoint(time, values[name])
-        controller.prescribeControlForActuator(name, function)
+        controller.prescribeControlForActuator(muscle.getName(), excitations[muscle.getName()])
     model.model.addController(controller)
     model.refresh()
 
 
-def simulate(model, pose, steps, time, accuracy=1e-8):
+def simulate(model, pose, excitations, time, accuracy=1e-8):
     """A forward simulation from rest in a pose, activations at the first excitations and fibres in equilibrium.
 
     Columns by the names of coordinates, and of each muscle its activation, fibre length and tendon force."""
-    prescribe(model, steps)
+    at_start = {name: f.calcValue(opensim.Vector(1, 0.0)) for name, f in excitations.items()}
+    prescribe(model, excitations)
     state = model.model.initSystem()
     for c, value in zip(model.coordinates, pose, strict=True):
         c.setValue(state, float(value), False)
         c.setSpeedValue(state, 0.0)
     for muscle in model.muscles:
-        muscle.setActivation(state, steps[0][1][muscle.getName()])
+        muscle.setActivation(state, at_start[muscle.getName()])
     model.model.equilibrateMuscles(state)
     manager = opensim.Manager(model.model)
     manager.setIntegratorAccuracy(accuracy)
@@ -164,12 +196,12 @@ def random_states(model, count, seed):
 
 
 def read_storage(path):
-    """Columns of an OpenSim storage file by name."""
+    """Columns of an OpenSim storage file by name. The names may go over several lines (states of CMCTool)."""
     lines = path.read_text().splitlines()
-    end = lines.index("endheader")
-    names = lines[end + 1].split("\t")
-    table = numpy.array([[float(cell) for cell in line.split("\t")] for line in lines[end + 2 :] if line.strip()])
-    return dict(zip((name.strip() for name in names), table.T, strict=True))
+    rows = [line.split() for line in lines[lines.index("endheader") + 1 :] if line.strip()]
+    first = next(i for i, row in enumerate(rows) if row[0][0] in "-.0123456789")
+    names = [name for row in rows[:first] for name in row]
+    return dict(zip(names, numpy.array(rows[first:], dtype=float).T, strict=True))
 
 
 def write_motion(path, columns):
@@ -220,3 +252,47 @@ def static_optimization(path, motion, folder, reserves, physiology=True, begin=0
     for coordinate, force in reserves.items():
         activations[f"{coordinate}_reserve"] *= force
     return activations
+
+
+def computed_muscle_control(path, motion, folder, end):
+    """OpenSim's CMCTool from 0 on, with windows of 10 ms, gains of 100 and 20, reserves of 1 N m everywhere: columns of
+    its states, at its integrator's steps from 0.03 s on."""
+    model = opensim.Model(str(path))
+    model.initSystem()
+    coordinates = [model.getCoordinateSet().get(i).getName() for i in range(model.getCoordinateSet().getSize())]
+    tasks = opensim.CMC_TaskSet()
+    for coordinate in coordinates:
+        reserve = opensim.CoordinateActuator(coordinate)
+        reserve.setName(f"{coordinate}_reserve")
+        reserve.setOptimalForce(1.0)
+        reserve.setMinControl(-1e3)
+        reserve.setMaxControl(1e3)
+        model.addForce(reserve)
+        task = opensim.CMC_Joint()
+        task.setName(coordinate)
+        task.setCoordinateName(coordinate)
+        task.setActive(True, False, False)
+        for put, value in ((task.setWeight, 1.0), (task.setKP, 100.0), (task.setKV, 20.0), (task.setKA, 1.0)):
+            put(value, 1.0, 1.0)
+        tasks.cloneAndAppend(task)
+    model.finalizeConnections()
+    model.printToXML(str(folder / "model.osim"))
+    tasks.printToXML(str(folder / "tasks.xml"))
+    tool = opensim.CMCTool()
+    tool.setName("peer")
+    tool.setModelFilename(str(folder / "model.osim"))
+    tool.setTaskSetFileName(str(folder / "tasks.xml"))
+    tool.setDesiredKinematicsFileName(str(motion))
+    tool.setLowpassCutoffFrequency(-1)
+    tool.setInitialTime(0.0)
+    # Its results end a window before.
+    tool.setFinalTime(end + 0.02)
+    tool.setTimeWindow(0.01)
+    tool.setUseFastTarget(True)
+    tool.setSolveForEquilibrium(True)
+    tool.setErrorTolerance(1e-5)
+    tool.setResultsDir(str(folder))
+    tool.printToXML(str(folder / "setup.xml"))
+    tool = opensim.CMCTool(str(folder / "setup.xml"))
+    assert tool.run()
+    return read_storage(folder / "peer_states.sto")

@@ -21,6 +21,13 @@ def veridyn(*arguments):
     return done.stdout
 
 
+def refusal(*arguments):
+    """What the program says on stderr where it must refuse its input, by exit code 2."""
+    done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, check=False)
+    assert done.returncode == 2, f"veridyn {' '.join(map(str, arguments))} ended with {done.returncode}"
+    return done.stderr
+
+
 def run_study(text, folder, verb="simulate"):
     """Runs a study that is given as text in a folder; the folder of its results."""
     study = pathlib.Path(folder) / "study.toml"

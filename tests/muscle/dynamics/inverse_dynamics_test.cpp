@@ -1,16 +1,10 @@
 #include "veridyn/muscle/dynamics/inverse_dynamics.hpp"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <numbers>
 
 #include "tests/muscle/dynamics/model_trees.hpp"
-#include "tests/muscle/reference_table.hpp"
-#include "tests/support/folders.hpp"
-#include "veridyn/muscle/osim/osim_reader.hpp"
 
 namespace veridyn::muscle {
 namespace {
@@ -42,66 +36,6 @@ TEST(InverseDynamics, IsThatOfADoublePendulum) {
                        Eigen::VectorXd(Eigen::Vector2d(dda, ddb)));
   EXPECT_NEAR(tau(0), t1, 1e-13);
   EXPECT_NEAR(tau(1), t2, 1e-13);
-}
-
-class OpenSimInverseDynamics : public testing::TestWithParam<const char*> {};
-
-// OpenSim 4.5.2's InverseDynamicsSolver in 20 random states.
-TEST_P(OpenSimInverseDynamics, IsOurs) {
-  const std::string name = GetParam();
-  const std::string file = fmt::format("{}/data/opensim/{}.osim", veridyn::test::shared_folder().string(), name);
-  const test::ReferenceTable table = test::read_reference(fmt::format("opensim/g_{}_inverse_dynamics.csv", name));
-  if (table.rows.empty() || !std::filesystem::exists(file)) GTEST_SKIP() << "no " << file << " or its reference";
-  const Model model = read_osim(file);
-  const Mechanism mechanism(model);
-  const auto n = static_cast<std::size_t>(mechanism.coordinates());
-  ASSERT_EQ(table.rows.size() % n, 0U);
-  double worst = 0.0;
-  for (std::size_t first = 0; first < table.rows.size(); first += n) {
-    Eigen::VectorXd q(mechanism.coordinates()), qdot(q), qddot(q), expected(q), gravity(q);
-    for (std::size_t row = first; row < first + n; ++row) {
-      ASSERT_EQ(table.text(row, "case"), table.text(first, "case"));
-      const int c = model.coordinate(table.text(row, "coordinate"));
-      ASSERT_GE(c, 0);
-      q(c) = table.number(row, "q_rad_or_m");
-      qdot(c) = table.number(row, "qdot");
-      qddot(c) = table.number(row, "qddot");
-      expected(c) = table.number(row, "generalized_force_Nm_or_N");
-      gravity(c) = table.number(row, "gravity_only_generalized_force");
-    }
-    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(q.size());
-    const Eigen::VectorXd tau = inverse_dynamics(mechanism, q, qdot, qddot);
-    const Eigen::VectorXd at_rest = inverse_dynamics(mechanism, q, zero, zero);
-    for (Eigen::Index i = 0; i < q.size(); ++i) {
-      EXPECT_NEAR(tau(i), expected(i), 1e-8 * std::abs(expected(i))) << "row " << first << " coordinate " << i;
-      EXPECT_NEAR(at_rest(i), gravity(i), 1e-8 * std::abs(gravity(i)) + 1e-12);
-      worst = std::max(worst, std::abs(tau(i) - expected(i)) / std::abs(expected(i)));
-    }
-  }
-  RecordProperty("worst_relative_difference", fmt::format("{:.2e}", worst));
-}
-
-INSTANTIATE_TEST_SUITE_P(Models, OpenSimInverseDynamics, testing::Values("arm26", "leg6dof9musc"));
-
-// A flexion of the elbow with minimum jerk, sampled every 5 ms.
-TEST(InverseDynamics, OfAnElbowFlexionIsOpenSims) {
-  const test::ReferenceTable table = test::read_reference("opensim/d_arm26_inverse_dynamics.csv");
-  if (table.rows.empty()) GTEST_SKIP() << "no reference/opensim under " << veridyn::test::shared_folder().string();
-  const Model model = test::arm26_skeleton();
-  const Mechanism mechanism(model);
-  const auto rows = static_cast<Eigen::Index>(table.rows.size());
-  CoordinateTable q = CoordinateTable::Zero(rows, 2), qdot = q, qddot = q;
-  for (Eigen::Index i = 0; i < rows; ++i) {
-    const double t = table.number(static_cast<std::size_t>(i), "time_s"), s = std::numbers::pi / 2.0;
-    q(i, 1) = s * (10.0 * std::pow(t, 3) - 15.0 * std::pow(t, 4) + 6.0 * std::pow(t, 5));
-    qdot(i, 1) = s * (30.0 * std::pow(t, 2) - 60.0 * std::pow(t, 3) + 30.0 * std::pow(t, 4));
-    qddot(i, 1) = s * (60.0 * t - 180.0 * t * t + 120.0 * std::pow(t, 3));
-  }
-  const CoordinateTable tau = inverse_dynamics(mechanism, q, qdot, qddot);
-  for (Eigen::Index i = 0; i < rows; ++i) {
-    EXPECT_NEAR(tau(i, 0), table.number(i, "r_shoulder_elev_moment_Nm"), 1e-12);
-    EXPECT_NEAR(tau(i, 1), table.number(i, "r_elbow_flex_moment_Nm"), 1e-12);
-  }
 }
 
 }  // namespace

@@ -8,9 +8,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <map>
-#include <sstream>
 
 #include "tests/muscle/path/believable_arms.hpp"
 #include "tests/muscle/path/posed_arm.hpp"
@@ -26,22 +24,9 @@ namespace {
 
 using test::PosedArm;
 
-#define SKIP_WITHOUT_PATH_REFERENCE()                                                 \
-  if (!std::filesystem::exists(veridyn::test::shared_folder() / "reference/opensim")) \
-  GTEST_SKIP() << "the reference of ../shared is not "                                \
-                  "here"
-
-std::vector<std::vector<std::string>> csv(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  std::vector<std::vector<std::string>> rows;
-  for (std::string line; std::getline(in, line);) {
-    std::vector<std::string> cells;
-    std::stringstream stream(line);
-    for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
-    rows.push_back(cells);
-  }
-  return rows;
-}
+#define SKIP_WITHOUT_MODELS()                                                    \
+  if (!std::filesystem::exists(veridyn::test::shared_folder() / "data/opensim")) \
+  GTEST_SKIP() << "the OpenSim models of ../shared/data are not here"
 
 Model arm26() { return read_osim(veridyn::test::shared_folder() / "data/opensim/arm26.osim"); }
 
@@ -72,72 +57,31 @@ void expect_differences(PosedArm& arm, const std::vector<Eigen::VectorXd>& poses
   }
 }
 
-// The rows left out: TRIlong where OpenSim wraps over TRIlongglen and TRIlonghh at once. From shoulder 70.85 to 144.6
-// deg its path is one that it enters and leaves with jumps of 2.7 and 7.9 mm (a2_arm26_path_jumps.csv); at 64.29 its
-// own two moment arms differ by 2.0e-3 m, and only the length is compared.
+// Poses left out: TRIlong where OpenSim wraps over TRIlongglen and TRIlonghh at once. From shoulder 70.85 to 144.6 deg
+// its path is one that it enters and leaves with jumps of 2.7 and 7.9 mm.
 bool opensim_jumps(const std::string& muscle, double shoulder) {
   return muscle == "TRIlong" && shoulder > 70.85 && shoulder < 144.6;
 }
-bool opensim_arm_is_off(const std::string& muscle, double shoulder) {
-  return opensim_jumps(muscle, shoulder) || (muscle == "TRIlong" && std::abs(shoulder - 64.2857) < 0.01);
-}
 
 // BIClong's second point lies inside the humeral head from shoulder 31.35 to 91.1 deg. OpenSim drops the wrap there,
-// with jumps of 1.7 and 0.13 mm (a2_arm26_path_jumps.csv); ours lifts the point, by up to 1.7 mm.
+// with jumps of 1.7 and 0.13 mm; ours lifts the point, by up to 1.7 mm.
 bool opensim_drops_the_wrap(const std::string& muscle, double shoulder) {
   return muscle == "BIClong" && shoulder > 31.3 && shoulder < 91.15;
 }
 
-TEST(MusclePaths, OfArm26AreOpenSimsOverTheSmoothPartOfTheGrid) {
-  SKIP_WITHOUT_PATH_REFERENCE();
-  PosedArm arm(arm26());
-  const auto rows = csv(veridyn::test::shared_folder() / "reference/opensim/a_arm26_paths_grid.csv");
-  int compared = 0, left_out = 0, lifted = 0;
-  for (std::size_t i = 1; i < rows.size(); ++i) {
-    const auto& row = rows[i];
-    const double shoulder = std::stod(row[0]), elbow = std::stod(row[1]);
-    const std::string& name = row[2];
-    const int m = arm.model.muscle(name);
-    arm.pose_deg(shoulder, elbow);
-    const bool wrapped = row.size() > 12 && !row[12].empty();
-    const std::string at = name + " at " + row[0] + ", " + row[1];
-    if (opensim_jumps(name, shoulder)) {
-      ++left_out;
-      continue;
-    }
-    if (opensim_drops_the_wrap(name, shoulder)) {
-      ++lifted;
-      EXPECT_GT(arm.workspace.length[m], std::stod(row[3])) << at;
-      EXPECT_NEAR(arm.workspace.length[m], std::stod(row[3]), 1.4e-3) << at;
-      EXPECT_NEAR(arm.moment_arm(m, 0), std::stod(row[6]), 2e-3) << at;
-      continue;
-    }
-    ++compared;
-    const double tolerance = name == "BICshort" ? 1e-9 : (wrapped ? 1e-4 : 1e-5);
-    EXPECT_NEAR(arm.workspace.length[m], std::stod(row[3]), tolerance) << at;
-    EXPECT_NEAR(arm.moment_arm(m, 1), std::stod(row[7]), 2e-4) << at;
-    if (!opensim_arm_is_off(name, shoulder)) {
-      EXPECT_NEAR(arm.moment_arm(m, 0), std::stod(row[6]), 2e-4) << at;
-    }
-  }
-  EXPECT_EQ(compared, 1162);
-  EXPECT_EQ(left_out, 56);
-  EXPECT_EQ(lifted, 42);
-}
-
-/// Where, between the grid's shoulder angles, a length of arm26 differs by more than 1e-4 m from OpenSim's, and by how
-/// much: TRIlong lets go of the end of its cylinder, onto which OpenSim's path jumps at 41.65 deg; BIClong's length has
-/// a spike in OpenSim near -78.4 deg, and see `opensim_drops_the_wrap`.
-double most_between_the_grid(const std::string& muscle, double shoulder) {
+/// Where a length of arm26 differs by more than 1e-4 m from OpenSim's, and by how much: TRIlong lets go of the end of
+/// its cylinder, onto which OpenSim's path jumps at 41.65 deg; BIClong's length has a spike in OpenSim near -78.4 deg,
+/// and see `opensim_drops_the_wrap`.
+double most_off(const std::string& muscle, double shoulder) {
   if (muscle == "TRIlong" && shoulder > 30.4 && shoulder < 41.65) return 1.9e-3;
   if (muscle == "BIClong" && shoulder > -79.5 && shoulder < -78.2) return 9e-4;
   if (opensim_drops_the_wrap(muscle, shoulder)) return 1.7e-3;
   return 1e-4;
 }
 
-// OpenSim's are those of the comparison mode, which is off by 2e-6 m on the grid.
-TEST(MusclePaths, OfArm26DifferFromOpenSimsBetweenTheGridWhereTheDocumentationSaysSo) {
-  SKIP_WITHOUT_PATH_REFERENCE();
+// OpenSim's are those of the comparison mode, which bench/peers compares with OpenSim itself.
+TEST(MusclePaths, OfArm26DifferFromTheComparisonModeWhereTheDocumentationSaysSo) {
+  SKIP_WITHOUT_MODELS();
   PosedArm ours(arm26()), theirs(arm26(), WrapMode::kAsOpenSim);
   std::map<std::string, double> largest;
   for (int step = 0; step <= 1080; ++step) {
@@ -149,7 +93,7 @@ TEST(MusclePaths, OfArm26DifferFromOpenSimsBetweenTheGridWhereTheDocumentationSa
         const std::string& name = ours.model.muscles[static_cast<std::size_t>(m)].name();
         if (opensim_jumps(name, shoulder)) continue;
         const double off = std::abs(ours.workspace.length[m] - theirs.workspace.length[m]);
-        EXPECT_LT(off, most_between_the_grid(name, shoulder)) << name << " at " << shoulder << ", " << elbow;
+        EXPECT_LT(off, most_off(name, shoulder)) << name << " at " << shoulder << ", " << elbow;
         largest[name] = std::max(largest[name], off);
       }
     }
@@ -158,27 +102,8 @@ TEST(MusclePaths, OfArm26DifferFromOpenSimsBetweenTheGridWhereTheDocumentationSa
   EXPECT_GT(largest["BIClong"], 1.5e-3);
 }
 
-// OpenSim 4.5.2's own lengths on both sides of its jump onto the cylinder of TRIlong.
-TEST(MusclePaths, LetGoOfACylindersEndWhereOpenSimJumps) {
-  SKIP_WITHOUT_PATH_REFERENCE();
-  PosedArm arm(arm26());
-  const auto m = static_cast<std::size_t>(arm.model.muscle("TRIlong"));
-  int jumps = 0;
-  for (const auto& row : csv(veridyn::test::shared_folder() / "reference/opensim/a2_arm26_path_jumps.csv")) {
-    if (row[0] != "shoulder+" || row[3] != "TRIlong" || row[1] != "41.65") continue;
-    ++jumps;
-    arm.pose_deg(41.6, std::stod(row[2]));
-    const double before = arm.workspace.length[m] - std::stod(row[4]);
-    arm.pose_deg(41.65, std::stod(row[2]));
-    EXPECT_NEAR(before, 1.9e-3, 1e-4) << row[2];
-    // Behind the jump ours has still the last tenth of a millimetre to take up.
-    EXPECT_NEAR(std::stod(row[5]) - arm.workspace.length[m], 1.0e-4, 1e-5) << row[2];
-  }
-  EXPECT_GE(jumps, 2);
-}
-
 TEST(MusclePaths, OfArm26AreContinuousInBothJoints) {
-  SKIP_WITHOUT_PATH_REFERENCE();
+  SKIP_WITHOUT_MODELS();
   PosedArm arm(arm26());
   // The trapezoidal rule with dL/dq at both ends of a step leaves a jump whole, and of a kink at most a quarter of the
   // change of dL/dq times the step: 2.8e-5 m here.
@@ -205,31 +130,12 @@ TEST(MusclePaths, OfArm26AreContinuousInBothJoints) {
 }
 
 TEST(MusclePaths, MomentArmsOfArm26AreTheDerivativesOfItsLengths) {
-  SKIP_WITHOUT_PATH_REFERENCE();
+  SKIP_WITHOUT_MODELS();
   PosedArm arm(arm26());
   std::vector<Eigen::VectorXd> poses;
   for (double s = -90.0; s < 180.0; s += 3.1)
     for (const double e : {5.0, 50.0, 110.0}) poses.push_back(Eigen::Vector2d(s * kDegree, e * kDegree));
   expect_differences(arm, poses, 3e-7);
-}
-
-TEST(MusclePaths, ReproduceOpenSimsOwnWrapInItsComparisonMode) {
-  SKIP_WITHOUT_PATH_REFERENCE();
-  PosedArm arm(arm26(), WrapMode::kAsOpenSim);
-  const auto rows = csv(veridyn::test::shared_folder() / "reference/opensim/a_arm26_paths_grid.csv");
-  for (std::size_t i = 1; i < rows.size(); ++i) {
-    const auto& row = rows[i];
-    const std::string& name = row[2];
-    const double shoulder = std::stod(row[0]);
-    // Two objects on one segment: our reading of OpenSim's iteration is 0.1 to 4.5 mm off there.
-    if (opensim_arm_is_off(name, shoulder)) continue;
-    arm.pose_deg(shoulder, std::stod(row[1]));
-    const int m = arm.model.muscle(name);
-    EXPECT_NEAR(arm.workspace.length[m], std::stod(row[3]), 2e-6) << name << " " << row[0] << " " << row[1];
-    // OpenSim's "virtual work" moment arms, which are not the derivatives of its lengths.
-    EXPECT_NEAR(arm.moment_arm(m, 0), std::stod(row[4]), 3e-5) << name << " " << row[0] << " " << row[1];
-    EXPECT_NEAR(arm.moment_arm(m, 1), std::stod(row[5]), 5e-6) << name << " " << row[0] << " " << row[1];
-  }
 }
 
 /// Random poses over the whole ranges: no arm sticks out of those within 1 deg of it along a coordinate by half or
@@ -247,13 +153,13 @@ void expect_believable_arms(const Model& model, int poses) {
 }
 
 TEST(MusclePaths, OfArm26HaveArmsThatNeverStickOut) {
-  SKIP_WITHOUT_PATH_REFERENCE();
+  SKIP_WITHOUT_MODELS();
   expect_believable_arms(arm26(), 3000);
 }
 
 TEST(MusclePaths, OfTheOtherModelsHaveArmsThatNeverStickOut) {
   expect_believable_arms(load_model("arm").model(), 3000);
-  SKIP_WITHOUT_PATH_REFERENCE();
+  SKIP_WITHOUT_MODELS();
   for (const char* file :
        {"leg6dof9musc.osim", "gait10dof18musc.osim", "gait2354_simbody.osim", "gait2392_thelen2003muscle.osim"})
     expect_believable_arms(read_osim(veridyn::test::shared_folder() / "data/opensim" / file), 300);
@@ -317,51 +223,6 @@ TEST(MusclePaths, OverTwoCylindersAndWithAnEndThatDipsInHaveArmsThatNeverStickOu
 
 TEST(MusclePaths, OverTwoCylindersThatCrossHaveArmsThatNeverStickOut) {
   for (const double shank_below : {0.03, 0.015, 0.0}) expect_believable_arms(over_two_cylinders(shank_below), 1000);
-}
-
-void compare_random_poses(const std::string& file, const std::string& prefix) {
-  PosedArm arm(read_osim(veridyn::test::shared_folder() / "data/opensim" / file));
-  const auto poses = csv(veridyn::test::shared_folder() / "reference/opensim" / (prefix + "_poses.csv"));
-  std::map<int, Eigen::VectorXd> at;
-  for (std::size_t i = 1; i < poses.size(); ++i) {
-    Eigen::VectorXd q = arm.model.default_pose();
-    for (std::size_t c = 1; c + 1 < poses[0].size(); ++c) {
-      std::string name = poses[0][c];
-      name = name.substr(0, name.rfind('_'));
-      ASSERT_GE(arm.model.coordinate(name), 0) << name;
-      q[arm.model.coordinate(name)] = std::stod(poses[i][c]);
-    }
-    at[std::stoi(poses[i][0])] = q;
-  }
-  const auto lengths = csv(veridyn::test::shared_folder() / "reference/opensim" / (prefix + "_lengths.csv"));
-  for (std::size_t i = 1; i < lengths.size(); ++i) {
-    arm.pose(at[std::stoi(lengths[i][0])]);
-    const int m = arm.model.muscle(lengths[i][1]);
-    ASSERT_GE(m, 0);
-    EXPECT_NEAR(arm.workspace.length[m], std::stod(lengths[i][2]), 1e-9) << lengths[i][1] << " pose " << lengths[i][0];
-  }
-  const auto arms = csv(veridyn::test::shared_folder() / "reference/opensim" / (prefix + "_momentarms.csv"));
-  for (std::size_t i = 1; i < arms.size(); ++i) {
-    if (arms[i][4] == "nan") continue;
-    const Eigen::VectorXd& q = at[std::stoi(arms[i][0])];
-    arm.pose(q);
-    const int m = arm.model.muscle(arms[i][1]), c = arm.model.coordinate(arms[i][2]);
-    double total = arm.moment_arm(m, c);
-    for (const CoordinateCoupler& coupler : arm.model.couplers)
-      if (coupler.independent == c)
-        total += coupler.function.evaluate(q[c]).slope * arm.moment_arm(m, coupler.dependent);
-    EXPECT_NEAR(total, std::stod(arms[i][4]), 2e-9) << arms[i][1] << " about " << arms[i][2] << " pose " << arms[i][0];
-  }
-}
-
-TEST(MusclePaths, OfTheLegWithMovingPointsAreOpenSims) {
-  SKIP_WITHOUT_PATH_REFERENCE();
-  compare_random_poses("leg6dof9musc.osim", "f_leg6dof9musc_range0p5");
-}
-
-TEST(MusclePaths, OfTheGaitModelAreOpenSims) {
-  SKIP_WITHOUT_PATH_REFERENCE();
-  compare_random_poses("gait10dof18musc.osim", "f_gait10dof18musc_range0p5");
 }
 
 TEST(MusclePaths, OfTheBuiltInArmHaveMomentArmsThatAreDerivatives) {

@@ -3,23 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <filesystem>
-
 #include "tests/muscle/minimum_jerk.hpp"
-#include "tests/muscle/reference_table.hpp"
 #include "tests/muscle/simulation/pedalling.hpp"
-#include "tests/support/folders.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
-#include "veridyn/muscle/osim/osim_reader.hpp"
 
 namespace veridyn::muscle {
 namespace {
-
-#define SKIP_WITHOUT_OPENSIMS_CONTROLS()                                              \
-  if (!std::filesystem::exists(veridyn::test::shared_folder() / "reference/opensim")) \
-  GTEST_SKIP() << "OpenSim's results of ../shared/reference are not here"
 
 using test::minimum_jerk;
 
@@ -94,35 +84,6 @@ TEST(ComputedMuscleControl, FollowsAMotionOfAClosedLoopAndItsReplayIsItself) {
   const MuscleTrajectory finer =
       simulate_forward(system, fine.start, fine.controls, {.end = 0.2, .accuracy = 1e-10}, progress);
   EXPECT_LT((finer.q - fine.trajectory.q).cwiseAbs().maxCoeff(), 1e-6);
-}
-
-TEST(ComputedMuscleControl, FindsOpenSimsActivationsAndTracksCloser) {
-  SKIP_WITHOUT_OPENSIMS_CONTROLS();
-  const test::ReferenceTable table = test::read_reference("opensim/d_arm26_cmc.csv");
-  const MusculoskeletalSystem system(read_osim(veridyn::test::shared_folder() / "data/opensim/arm26.osim"));
-  const Motion motion =
-      make_motion(read_signals(veridyn::test::shared_folder() / "reference/opensim/minjerk_elbow.mot"), system.model());
-  Progress progress;
-  const ControlResult r = computed_muscle_control(system, motion, {.end = 1.01, .rate_Hz = 1000.0}, progress);
-  ASSERT_TRUE(r.usable());
-  double opensim = 0.0;
-  std::vector<double> sum(6, 0.0);
-  std::size_t rows = 0;
-  for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    const double t = table.number(i, "time_s");
-    if (t > 1.0) break;
-    const auto at = static_cast<Eigen::Index>(std::lround(t * 1000.0));
-    opensim =
-        std::max(opensim, std::abs(table.number(i, "r_elbow_flex_rad") - table.number(i, "desired_r_elbow_flex_rad")));
-    ++rows;
-    for (std::size_t m = 0; m < 6; ++m) {
-      sum[m] +=
-          std::abs(r.trajectory.activation(at, m) - table.number(i, system.model().muscles[m].name() + "_activation"));
-    }
-  }
-  EXPECT_LT(r.tracking_error(1), 3e-3);
-  EXPECT_LT(r.tracking_error(1), opensim);
-  for (const double s : sum) EXPECT_LT(s / static_cast<double>(rows), 0.02);
 }
 
 }  // namespace

@@ -6,10 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "tests/muscle/arm26_scenarios.hpp"
-#include "tests/muscle/reference_table.hpp"
 #include "tests/support/folders.hpp"
-#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
 #include "veridyn/muscle/osim/osim_reader.hpp"
@@ -22,55 +19,6 @@ using ::testing::HasSubstr;
 
 MuscleControls constant_drive(std::size_t muscles, double excitation) {
   return {ControlSignals(std::vector<double>(muscles, excitation)), {}};
-}
-
-struct Differences {
-  double angle_deg = 0.0, fiber = 0.0, force = 0.0;
-};
-
-/// Largest differences from OpenSim's rows over the second.
-Differences compare(const std::string& kind, int number, PathSource paths) {
-  const test::ReferenceTable table =
-      test::read_reference("opensim/c_arm26_forward_" + kind + "_s" + std::to_string(number) + ".csv");
-  const MusculoskeletalSystem system(read_osim(veridyn::test::shared_folder() / "data/opensim" /
-                                               (kind == "millard" ? "arm26_millard.osim" : "arm26.osim")),
-                                     {.paths = paths});
-  StartState start = default_start(system.model());
-  start.q << table.number(0, "r_shoulder_elev_rad"), table.number(0, "r_elbow_flex_rad");
-  Progress progress;
-  const MuscleTrajectory t =
-      simulate_forward(system, start, test::arm26_scenario(number, 0.00025), {.accuracy = 1e-6}, progress);
-  EXPECT_TRUE(t.usable()) << t.message();
-  EXPECT_EQ(t.time.size(), table.rows.size());
-  Differences d;
-  for (std::size_t i = 0; i < std::min(t.time.size(), table.rows.size()); ++i) {
-    d.angle_deg = std::max({d.angle_deg, std::abs(t.q(i, 0) - table.number(i, "r_shoulder_elev_rad")) / kDegree,
-                            std::abs(t.q(i, 1) - table.number(i, "r_elbow_flex_rad")) / kDegree});
-    for (std::size_t m = 0; m < system.muscles().size(); ++m) {
-      const std::string& name = system.model().muscles[m].name();
-      d.fiber = std::max(d.fiber, std::abs(t.fiber_length(i, m) - table.number(i, name + "_fiber_length_m")));
-      d.force = std::max(d.force, std::abs(t.tendon_force(i, m) - table.number(i, name + "_tendon_force_N")));
-    }
-  }
-  return d;
-}
-
-TEST(ForwardSimulation, WholeArmStaysWithinHalfADegreeOfOpenSimAndOnItsOwnPathsWithinItsReference) {
-  if (!std::filesystem::exists(veridyn::test::shared_folder() / "reference/opensim"))
-    GTEST_SKIP() << "OpenSim's results of ../shared/reference are not here";
-  for (const char* kind : {"thelen", "millard"}) {
-    for (int number = 1; number <= 3; ++number) {
-      SCOPED_TRACE(kind + std::to_string(number));
-      const Differences taut = compare(kind, number, PathSource::kExact);
-      EXPECT_LT(taut.angle_deg, 0.5);
-      // With OpenSim's own path lengths what remains is that its moment arms are not quite their derivatives.
-      const Differences same = compare(kind, number, PathSource::kAsOpenSim);
-      EXPECT_LT(same.angle_deg, 1e-3);
-      EXPECT_LT(same.fiber, 1e-6);
-      EXPECT_LT(same.force, 0.1);
-      RecordProperty(kind + std::to_string(number) + "_taut_deg", std::to_string(taut.angle_deg));
-    }
-  }
 }
 
 class BuiltInArm : public ::testing::Test {

@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "tests/muscle/minimum_jerk.hpp"
-#include "tests/muscle/reference_table.hpp"
 #include "tests/support/folders.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
 #include "veridyn/muscle/osim/osim_reader.hpp"
@@ -18,29 +16,6 @@
 
 namespace veridyn::muscle {
 namespace {
-
-TEST(MotionAnalysis, StaticOptimisationOfAMotionIsOpenSims) {
-  if (!std::filesystem::exists(veridyn::test::shared_folder() / "reference/opensim"))
-    GTEST_SKIP() << "OpenSim's results of ../shared/reference are not here";
-  const test::ReferenceTable table = test::read_reference("opensim/d_arm26_static_optimization.csv");
-  const MusculoskeletalSystem system(read_osim(veridyn::test::shared_folder() / "data/opensim/arm26.osim"),
-                                     {.paths = PathSource::kAsOpenSim});
-  const Motion motion =
-      make_motion(read_signals(veridyn::test::shared_folder() / "reference/opensim/minjerk_elbow.mot"), system.model());
-  Progress progress;
-  const MotionAnalysis a = optimise_motion(system, motion, system.model().default_pose(), frame_times(0.0, 1.0, 200.0),
-                                           {.reserve = {1.0, 1.0}}, progress);
-  ASSERT_EQ(a.time.size(), table.rows.size());
-  EXPECT_TRUE(a.infeasible.empty());
-  for (std::size_t i = 0; i < a.time.size(); ++i) {
-    // The jerk of this motion jumps at its ends: there any spline rings, each differently.
-    const double tolerance = a.time[i] < 0.02 || a.time[i] > 0.98 ? 3e-4 : 1e-4;
-    for (std::size_t m = 0; m < 6; ++m) {
-      EXPECT_NEAR(a.activation(i, m), table.number(i, system.model().muscles[m].name() + "_activation"), tolerance)
-          << a.time[i];
-    }
-  }
-}
 
 TEST(MotionAnalysis, MomentsAreProducedByTheMuscles) {
   const MusculoskeletalSystem system(load_model("arm").model());

@@ -10,7 +10,7 @@
 
 namespace veridyn::muscle::test {
 
-/// Excitations of the three scenarios for arm26 whose results by OpenSim stand in the reference (its README): constant;
+/// Excitations of the three scenarios for arm26 that OpenSim was timed with (e_timings.csv of the reference): constant;
 /// a step at 0.2 s; sines, sampled every `period` seconds and joined by lines.
 inline MuscleControls arm26_scenario(int number, double period) {
   constexpr std::size_t kMuscles = 6;
