@@ -85,8 +85,6 @@ class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel, 8, e
   [[nodiscard]] std::vector<estimation::RowMatrix> measured() const override;
   /// Where a segment lies in its flight.
   [[nodiscard]] TimeSpan segment_span(std::size_t segment) const override;
-  /// Which of the flights a segment is of.
-  [[nodiscard]] std::size_t flight_of(std::size_t segment) const { return segments_[segment].flight; }
   /// Between two samples of the outputs [s].
   [[nodiscard]] double sample_interval_s() const override { return step_; }
   /// The states that are simulated, which are the first outputs.

@@ -94,8 +94,6 @@ inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownUnits{
     "1",     "1",     "s^2/m^2", "s^2/m^2", "1",   "1", "rad/s", "1",         "rad", "1", "rad/s",
     "m/s^2", "1",     "rad",     "rad/s",   "rad", "s", "s",     "s",         "s"};
 static_assert(!kDriveUnknownNames.back().empty() && !kDriveUnknownUnits.back().empty(), "one is missing");
-/// Whether it is the vehicle's, and not of its sensors or the day.
-[[nodiscard]] constexpr bool is_of_the_vehicle(DriveUnknown u) { return u < DriveUnknown::kRollFrequency; }
 /// Whether it is an offset of a sensor, which each drive has its own of.
 [[nodiscard]] constexpr bool is_bias(DriveUnknown u) {
   return u == DriveUnknown::kSteerBias || u == DriveUnknown::kYawRateBias || u == DriveUnknown::kAccelYBias ||
