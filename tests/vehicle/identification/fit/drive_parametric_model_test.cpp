@@ -74,7 +74,7 @@ void expect_derivatives(const DriveParametricModel& model, const Eigen::VectorXd
 
 TEST(DriveParametricModel, SensitivitiesAreThoseOfFiniteDifferences) {
   const DriveSignals signals = rolling_signals(testing::perfect_sensors());
-  for (const DriveTyre tyre : {DriveTyre::kLinear, DriveTyre::kMagicFormula}) {
+  for (const DriveTyre tyre : {kDriveTyre<LinearTyre>, kDriveTyre<SimpleMagicFormulaTyre>}) {
     for (const DriveStructure structure :
          {DriveStructure::kBicycle, DriveStructure::kRoll, DriveStructure::kRelaxation}) {
       DriveModelOptions options;
