@@ -12,7 +12,7 @@
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/recording.hpp"
 #include "veridyn/core/study.hpp"
-#include "veridyn/estimation/estimate.hpp"
+#include "veridyn/estimation/result/estimate.hpp"
 #include "veridyn/estimation/uncertainty/damped_cosine.hpp"
 #include "veridyn/estimation/uncertainty/monte_carlo.hpp"
 

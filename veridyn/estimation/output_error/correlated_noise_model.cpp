@@ -8,7 +8,7 @@
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
-#include "veridyn/numerics/parallel.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::estimation {
 namespace {

@@ -10,8 +10,8 @@
 #include "veridyn/core/index.hpp"
 #include "veridyn/core/quiet_progress.hpp"
 #include "veridyn/estimation/output_error/model_view.hpp"
-#include "veridyn/numerics/parallel.hpp"
 #include "veridyn/numerics/statistics.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::estimation {
 namespace {
