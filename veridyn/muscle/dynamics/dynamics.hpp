@@ -184,6 +184,18 @@ void Dynamics<Scalar>::inverse_dynamics(const Scalar* qddot, const SpatialVector
 }
 
 template <typename Scalar>
+void Dynamics<Scalar>::update_composite() {
+  const std::size_t links = center_.size();
+  for (std::size_t i = 1; i < links; ++i) {
+    composite_[i] = RigidInertia<Scalar>::of(mechanism_->link(static_cast<int>(i)).mass, center_[i], inertia_[i]);
+  }
+  for (std::size_t i = links - 1; i >= 1; --i) {
+    const int parent = mechanism_->link(static_cast<int>(i)).parent;
+    if (parent > 0) composite_[parent] += composite_[i];
+  }
+}
+
+template <typename Scalar>
 void Dynamics<Scalar>::update_mass_rows() {
   update_composite();
   for (std::size_t i = 1; i < center_.size(); ++i) {

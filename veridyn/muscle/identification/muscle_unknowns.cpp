@@ -28,8 +28,7 @@ std::size_t find_field(std::string_view field, std::string_view place) {
     names.emplace_back(parameter_field(i).name);
     if (names.back() == field) return i;
   }
-  throw InputError(place,
-                   fmt::format("'{}': a muscle has no parameter '{}'{}", field, field, suggestion(field, names)));
+  throw InputError(place, fmt::format("'{0}': a muscle has no parameter '{0}'{1}", field, suggestion(field, names)));
 }
 
 std::vector<int> find_muscles(const Model& model, const MuscleUnknownSpec& spec, std::string_view place) {

@@ -94,7 +94,7 @@ TEST(DriveParametricModel, SensitivitiesAreThoseOfFiniteDifferences) {
       std::vector<Eigen::Index> active(static_cast<std::size_t>(theta.size()));
       std::iota(active.begin(), active.end(), Eigen::Index{0});
       expect_derivatives(model, theta, active,
-                         std::string(to_string(structure)) + ", tyre " + std::to_string(static_cast<int>(tyre)));
+                         std::string(to_string(structure)) + ", tyre " + std::to_string(tyre.index()));
     }
   }
 }
