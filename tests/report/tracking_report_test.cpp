@@ -24,7 +24,7 @@ struct TrackedAircraft {
 
 /// The elevator is moved for a minute. @param more further lines of the study
 TrackedAircraft tracked_aircraft(const std::string& more) {
-  const std::string text = test::elevator_flight(1) + R"toml([reconstruct]
+  const std::string text = veridyn::test::elevator_flight(1) + R"toml([reconstruct]
 sensors = "reference"
 turbulence = "none"
 [delays]
