@@ -10,7 +10,7 @@
 #include "veridyn/aircraft/model/trim.hpp"
 #include "veridyn/numerics/linear_algebra/general_eigen.hpp"
 
-namespace veridyn::aircraft::test {
+namespace veridyn::aircraft::testing {
 
 /// Eigenvalues of four of the states by themselves [1/s], by falling magnitude.
 inline std::vector<std::complex<double>> eigenvalues_of(const LinearModel& model, const std::array<int, 4>& states) {
@@ -33,4 +33,4 @@ inline std::vector<std::complex<double>> lateral_eigenvalues(const LinearModel& 
   return eigenvalues_of(model, {1, 3, 5, 6});
 }
 
-}  // namespace veridyn::aircraft::test
+}  // namespace veridyn::aircraft::testing
