@@ -15,9 +15,6 @@
 /// `Analysis` holds it with predictions and methods. Component `estimation`.
 
 #include "veridyn/core.hpp"
-#include "veridyn/estimation/analysis.hpp"
-#include "veridyn/estimation/estimate.hpp"
-#include "veridyn/estimation/estimate_comparison.hpp"
 #include "veridyn/estimation/kalman/kalman_filter.hpp"
 #include "veridyn/estimation/kalman/smoother.hpp"
 #include "veridyn/estimation/output_error/output_error.hpp"
@@ -25,6 +22,9 @@
 #include "veridyn/estimation/regression/regression.hpp"
 #include "veridyn/estimation/regression/regression_judgement.hpp"
 #include "veridyn/estimation/regression/structure_search.hpp"
+#include "veridyn/estimation/result/analysis.hpp"
+#include "veridyn/estimation/result/estimate.hpp"
+#include "veridyn/estimation/result/estimate_comparison.hpp"
 #include "veridyn/estimation/search/particle_swarm.hpp"
 #include "veridyn/estimation/search/pattern_search.hpp"
 #include "veridyn/estimation/uncertainty/monte_carlo.hpp"

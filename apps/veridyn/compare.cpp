@@ -6,7 +6,7 @@
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/results/output_folder.hpp"
 #include "apps/veridyn/version.hpp"
-#include "veridyn/estimation/estimate_comparison.hpp"
+#include "veridyn/estimation/result/estimate_comparison.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/report/comparison_report.hpp"
 #include "veridyn/report/document/html.hpp"

@@ -80,7 +80,7 @@ set = "reference"                  # production-car sensors; "perfect"
 [identify]
 # method = "auto"                  # "output error", "GTLS", ...
 # structure = "auto"               # as the drive asks for; fixed: "bicycle", "roll", ... (docs/vehicle.md)
-# tyre = "linear"                  # "magic formula": mu and shape too
+# tyre = "linear"                  # "fiala": mu too; "magic formula": mu and shape
 # estimate = ["C_f", "C_r", "I_z", "steer_bias", "yaw_rate_bias", "accel_y_bias"]   # also steer_scale, delays, mu, a
 # profiles = ["C_f", "C_r"]        # profile likelihood of these; true: of all that are estimated
 # [identify.uncertainty]

@@ -137,6 +137,7 @@ TEST(Study, TakesTheSubjectOfAFileWhereItHasNoKeysOfItsOwn) {
   std::filesystem::create_directories(folder / "out");
   write_file(folder / "out" / "subject.toml",
              "# graded\n[subject]\nmass = -5\nspan = 2\nname = \"a.tir\"\n[subject.tyres]\nfront = \"front.tir\"\n"
+             "both = [\"a.tir\", \"/abs/b.tir\"]\n"
              "[subject.inertia]\nJx = 1\nJy = 2\n[subject.model.CL]\nalpha = 4\nq_n = 5\n[other]\nx = 1\n");
   const auto in_folder = [&](const std::string& text, std::vector<std::string> overrides = {}) {
     return Study::parse(text, "study.toml", folder, overrides);
@@ -145,6 +146,11 @@ TEST(Study, TakesTheSubjectOfAFileWhereItHasNoKeysOfItsOwn) {
   const StudyTable subject = named.root().table("subject");
   EXPECT_EQ(subject.number("span", "m"), 3.0);
   EXPECT_EQ(subject.table("tyres").file("front"), folder / "out" / "front.tir");
+  EXPECT_THAT(subject.table("tyres").files("both"), ElementsAre(folder / "out" / "a.tir", "/abs/b.tir"));
+  const Study own =
+      in_folder("[subject]\nfile = \"out/subject.toml\"\ntyres.front = \"f.tir\"\n", {"subject.tyres.rear=r.tir"});
+  EXPECT_EQ(own.root().table("subject").table("tyres").file("front"), folder / "f.tir");
+  EXPECT_EQ(own.root().table("subject").table("tyres").file("rear"), folder / "r.tir");
   const std::string wrong = why([&] { static_cast<void>(subject.positive("mass", "kg")); });
   EXPECT_THAT(wrong, testing::StartsWith((folder / "out" / "subject.toml").string() + ":3: subject.mass"));
   // Tables within are filled too, but for a coefficient, which is one or the other.
@@ -158,6 +164,7 @@ TEST(Study, TakesTheSubjectOfAFileWhereItHasNoKeysOfItsOwn) {
   // What is written down of the run needs the file no more.
   const Study kept = Study::parse(named.to_toml(), "kept.toml", "/elsewhere");
   EXPECT_EQ(kept.root().table("subject").number("mass", "kg"), -5.0);
+  EXPECT_EQ(kept.root().table("subject").table("tyres").file("front"), folder / "out" / "front.tir");
   const Study set = in_folder("[scale.model]\nspan = 1\n", {"scale.model.file=out/subject.toml"});
   EXPECT_EQ(set.root().table("scale").table("model").number("mass", "kg"), -5.0);
   EXPECT_THAT(why([&] { static_cast<void>(in_folder("[subject]\nfile = \"absent.toml\"\n")); }),

@@ -57,10 +57,15 @@ TEST(DimensionalAnalysis, FindsTheDragCoefficientAndTheReynoldsNumber) {
 }
 
 TEST(DimensionalAnalysis, CountsAnglesAsPlainNumbers) {
-  const std::array<DimensionalQuantity, 3> basis{
-      {{"m", parse_unit("kg")}, {"L", parse_unit("m")}, {"u", parse_unit("m/s")}}};
-  EXPECT_EQ(express(parse_unit("N/rad"), basis), (std::vector<Fraction>{1, -1, 2}));
-  EXPECT_EQ(express(parse_unit("rad"), basis), (std::vector<Fraction>{0, 0, 0}));
+  const std::array<DimensionalQuantity, 5> quantities{{{"m", parse_unit("kg")},
+                                                       {"L", parse_unit("m")},
+                                                       {"u", parse_unit("m/s")},
+                                                       {"C", parse_unit("N/rad")},
+                                                       {"alpha", parse_unit("rad")}}};
+  const PiGroups pi = pi_groups(quantities, std::array<std::string, 3>{"m", "L", "u"});
+  ASSERT_EQ(pi.groups.size(), 2U);
+  EXPECT_EQ(pi.groups[0].formula, "C L/(m u^2)");
+  EXPECT_EQ(pi.groups[1].formula, "alpha");
 }
 
 TEST(DimensionalAnalysis, RefusesRepeatingVariablesThatCannotServe) {

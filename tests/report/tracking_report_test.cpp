@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tests/report/shown.hpp"
+#include "tests/support/elevator_flight.hpp"
 
 namespace veridyn::report {
 namespace {
@@ -23,18 +24,7 @@ struct TrackedAircraft {
 
 /// The elevator is moved for a minute. @param more further lines of the study
 TrackedAircraft tracked_aircraft(const std::string& more) {
-  const std::string text = R"toml(seed = 1
-[subject]
-builtin = "unatrap"
-[flight]
-duration = 60
-airspeed = 20
-[[flight.manoeuvre]]
-kind = "multisine"
-start = 0
-duration = 60
-surfaces = ["elevator"]
-[reconstruct]
+  const std::string text = veridyn::test::elevator_flight(1) + R"toml([reconstruct]
 sensors = "reference"
 turbulence = "none"
 [delays]

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "veridyn/estimation/judgement/evidence.hpp"
-#include "veridyn/estimation/parameter.hpp"
+#include "veridyn/estimation/result/parameter.hpp"
 
 /// What becomes of one fault at a time in simulated recordings of known truth: is it caught, is it named, or does it
 /// end in numbers that are confident and wrong?

@@ -35,7 +35,7 @@ struct StudyDocument {
 /// One table of the document that it keeps alive, with the keys that were read and the tables opened from it.
 struct StudyNode {
   std::shared_ptr<StudyDocument> document;
-  const toml::table* table = nullptr;  ///< null for a table that is absent
+  toml::table* table = nullptr;  ///< null for a table that is absent
   std::set<std::string, std::less<>> known;
   std::set<std::string, std::less<>> accepted;  ///< with all that is in them
   std::map<std::string, std::vector<std::pair<std::string, std::shared_ptr<StudyNode>>>, std::less<>> opened;
@@ -74,7 +74,7 @@ std::string_view kind_of(const toml::node& node) {
   }
 }
 
-const toml::node* find(const StudyNode& node, std::string_view key) {
+toml::node* find(const StudyNode& node, std::string_view key) {
   return node.table == nullptr ? nullptr : node.table->get(key);
 }
 
@@ -125,6 +125,18 @@ std::string text_from(const toml::node& node, const std::string& place) {
   throw InputError(place, fmt::format("is {}, expected a text in quotes", kind_of(node)));
 }
 
+/// The path in a text. A relative one is from the folder of the file that states it: the study's own, or the one that
+/// gave the subject. The study then holds that one whole, since what it is written to does not say where a key is from.
+std::filesystem::path path_from(toml::node& node, const StudyDocument* document, const std::string& place) {
+  std::filesystem::path path = text_from(node, place);
+  if (path.is_absolute() || document == nullptr) return path;
+  const auto& source = node.source().path;  // an override has none
+  if (!source || *source == document->name) return document->folder / path;
+  path = std::filesystem::absolute(std::filesystem::path(*source).parent_path() / path);
+  *node.as_string() = path.string();
+  return path;
+}
+
 /// A table, or an array that holds tables, with something in it.
 bool holds_keys(const toml::node& node) {
   if (const toml::table* table = node.as_table()) return !table->empty();
@@ -155,15 +167,6 @@ toml::table parsed(std::string_view text, const std::string& name) {
   } catch (const toml::parse_error& error) {
     throw InputError(fmt::format("{}:{}:{}", name, error.source().begin.line, error.source().begin.column),
                      fmt::format("not TOML: {}", error.description()));
-  }
-}
-
-/// Files of tyres are named from the folder of the subject that names them.
-void find_tyres_from(const std::filesystem::path& folder, toml::table& subject) {
-  for (const char* path : {"tyre", "tyres.front", "tyres.rear"}) {
-    auto* text = subject.at_path(path).as_string();
-    if (text != nullptr && (text->get().ends_with(".tir") || text->get().ends_with(".TIR")))
-      text->get() = std::filesystem::absolute(folder / text->get()).string();
   }
 }
 
@@ -208,7 +211,6 @@ void take_subject_of_file(toml::table& table, const std::string& path, StudyDocu
   if (subject == nullptr) throw InputError(place, fmt::format("{} has no [subject]", file.string()));
   if (subject->contains("file"))
     throw InputError(place, fmt::format("{} takes its subject from another file; name that one", file.string()));
-  find_tyres_from(file.parent_path(), *subject);
   table.erase("file");
   fill_from(table, std::move(*subject), "model");
   document.notes.push_back(fmt::format("{}: what this table does not give is taken from {}", place, file.string()));
@@ -279,8 +281,8 @@ void StudyTable::fail(std::string_view key, std::string_view what) const { throw
 
 namespace {
 
-const toml::node& require(const StudyTable& table, const StudyNode& node, std::string_view key) {
-  const toml::node* found = find(node, key);
+toml::node& require(const StudyTable& table, const StudyNode& node, std::string_view key) {
+  toml::node* found = find(node, key);
   if (found == nullptr) table.fail(key, "is missing");
   return *found;
 }
@@ -372,16 +374,18 @@ std::vector<std::string> StudyTable::texts(std::string_view key) const {
 }
 
 std::filesystem::path StudyTable::file(std::string_view key) const {
-  const std::filesystem::path path = text(key);
-  return path.is_absolute() || !node_->document ? path : node_->document->folder / path;
+  node_->known.emplace(key);
+  return path_from(require(*this, *node_, key), node_->document.get(), place(key));
 }
 
 std::vector<std::filesystem::path> StudyTable::files(std::string_view key) const {
+  node_->known.emplace(key);
+  toml::node& node = require(*this, *node_, key);
+  toml::array* array = node.as_array();
+  if (array == nullptr) return {path_from(node, node_->document.get(), place(key))};
   std::vector<std::filesystem::path> paths;
-  for (const std::string& name : texts(key)) {
-    const std::filesystem::path path = name;
-    paths.push_back(path.is_absolute() || !node_->document ? path : node_->document->folder / path);
-  }
+  for (std::size_t i = 0; i < array->size(); ++i)
+    paths.push_back(path_from(*array->get(i), node_->document.get(), fmt::format("{}[{}]", place(key), i)));
   return paths;
 }
 
@@ -399,7 +403,7 @@ StudyTable StudyTable::table(std::string_view key) const {
 
 StudyTable StudyTable::table_or_empty(std::string_view key) const {
   node_->known.emplace(key);
-  const toml::node* found = find(*node_, key);
+  toml::node* found = find(*node_, key);
   if (found != nullptr && !found->is_table()) fail(key, fmt::format("is {}, expected a table", kind_of(*found)));
   auto& opened = node_->opened[std::string(key)];
   const std::string child_path = dotted(path_, key);
@@ -415,14 +419,14 @@ StudyTable StudyTable::table_or_empty(std::string_view key) const {
 
 std::vector<StudyTable> StudyTable::tables(std::string_view key) const {
   if (!has(key)) return {};
-  const toml::node& node = *find(*node_, key);
-  const toml::array* array = node.as_array();
+  toml::node& node = *find(*node_, key);
+  toml::array* array = node.as_array();
   if (array == nullptr) fail(key, fmt::format("is {}, expected an array of tables [[{}]]", kind_of(node), key));
   auto& opened = node_->opened[std::string(key)];
   std::vector<StudyTable> result;
   for (std::size_t i = 0; i < array->size(); ++i) {
     if (opened.size() <= i) {
-      const toml::table* table = array->get(i)->as_table();
+      toml::table* table = array->get(i)->as_table();
       const std::string child_path = fmt::format("{}[{}]", dotted(path_, key), i);
       if (table == nullptr) fail(key, fmt::format("[{}] is {}, expected a table", i, kind_of(*array->get(i))));
       auto child = std::make_shared<StudyNode>();

@@ -56,7 +56,8 @@ class StudyTable {
   /// An array of numbers, each as in `number`. A single number counts as an array of one.
   [[nodiscard]] std::vector<double> numbers(std::string_view key, std::string_view unit) const;
   [[nodiscard]] std::vector<std::string> texts(std::string_view key) const;
-  /// A path; a relative one is taken from the folder of the study file.
+  /// A path; a relative one is taken from the folder of the file that states it: the study's, or that of the file from
+  /// which it takes its subject.
   [[nodiscard]] std::filesystem::path file(std::string_view key) const;
   [[nodiscard]] std::vector<std::filesystem::path> files(std::string_view key) const;
 
@@ -107,7 +108,8 @@ class Study {
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   /// What its author should know: keys that have a new name. One line each.
   [[nodiscard]] const std::vector<std::string>& notes() const;
-  /// The study after its overrides, as TOML: what a result has to keep to be reproduced.
+  /// The study after its overrides, as TOML: what a result has to keep to be reproduced. Relative paths that the file
+  /// of a subject stated are absolute in it once they have been read.
   [[nodiscard]] std::string to_toml() const;
 
  private:

@@ -167,13 +167,6 @@ std::string product_formula(std::span<const std::string> symbols, std::span<cons
   return above + (below_count > 1 ? "/(" + below + ")" : "/" + below);
 }
 
-std::vector<Fraction> express(const Unit& unit, std::span<const DimensionalQuantity> basis) {
-  require_independent(basis);
-  std::optional<std::vector<Fraction>> exponents = solve(unit, basis);
-  if (!exponents) refuse_dimension({fmt::format("a quantity in {}", unit.name), unit}, basis);
-  return *std::move(exponents);
-}
-
 PiGroups pi_groups(std::span<const DimensionalQuantity> quantities, std::span<const std::string> repeating) {
   const std::vector<std::string> symbols = symbols_of(quantities);
   if (const std::set<std::string> unique(symbols.begin(), symbols.end()); unique.size() != symbols.size()) {

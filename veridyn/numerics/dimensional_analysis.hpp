@@ -78,10 +78,6 @@ struct PiGroups {
 [[nodiscard]] PiGroups pi_groups(std::span<const DimensionalQuantity> quantities,
                                  std::span<const std::string> repeating);
 
-/// Exponents with which the product of `basis` has the dimension of `unit`: force in (m, L, u) is (1, -1, 2).
-/// @throws InputError as `pi_groups`.
-[[nodiscard]] std::vector<Fraction> express(const Unit& unit, std::span<const DimensionalQuantity> basis);
-
 /// "m u^2/L" for the exponents (1, -1, 2) of (m, L, u); "1" when all are zero.
 [[nodiscard]] std::string product_formula(std::span<const std::string> symbols, std::span<const Fraction> exponents);
 

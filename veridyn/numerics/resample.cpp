@@ -174,18 +174,6 @@ std::vector<double> resample(std::span<const double> time, std::span<const doubl
   return out;
 }
 
-std::vector<double> decimate(std::span<const double> x, std::size_t factor) {
-  if (factor < 1) throw InputError("decimate.factor", "is 0; must be >= 1");
-  if (factor == 1) return {x.begin(), x.end()};
-  const double nyquist = 0.5 / static_cast<double>(factor);
-  const std::vector<double> smooth =
-      filter(x, low_pass({.rate_Hz = 1.0, .pass_Hz = 0.8 * nyquist, .stop_Hz = nyquist}));
-  std::vector<double> out;
-  out.reserve(x.size() / factor + 1);
-  for (std::size_t k = 0; k < x.size(); k += factor) out.push_back(smooth[k]);
-  return out;
-}
-
 void unwrap_angles(std::span<double> angle) {
   double previous = kNaN;
   for (double& a : angle) {

@@ -42,10 +42,6 @@ struct ResampleOptions {
 [[nodiscard]] std::vector<double> resample(std::span<const double> time, std::span<const double> value,
                                            const UniformGrid& grid, const ResampleOptions& options = {});
 
-/// Every factor-th sample, after a zero-phase low-pass whose stop band begins at the new Nyquist frequency (pass band
-/// 0.8 of it, 60 dB).
-[[nodiscard]] std::vector<double> decimate(std::span<const double> x, std::size_t factor);
-
 /// Removes jumps of more than half a turn between neighbouring finite angles [rad], so that they can be interpolated.
 void unwrap_angles(std::span<double> angle);
 

@@ -8,9 +8,9 @@
 #include <optional>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/numerics/parallel.hpp"
 #include "veridyn/numerics/resample.hpp"
 #include "veridyn/numerics/statistics.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::recording {
 namespace {

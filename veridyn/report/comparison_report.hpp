@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "veridyn/estimation/estimate_comparison.hpp"
+#include "veridyn/estimation/result/estimate_comparison.hpp"
 #include "veridyn/report/document/document.hpp"
 
 namespace veridyn::report {

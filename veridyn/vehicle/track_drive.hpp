@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "veridyn/core/progress.hpp"
-#include "veridyn/estimation/estimate.hpp"
+#include "veridyn/estimation/result/estimate.hpp"
 #include "veridyn/vehicle/tracking/drive_tracker.hpp"
 #include "veridyn/vehicle/vehicle_study.hpp"
 

@@ -10,7 +10,7 @@
 
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/study.hpp"
-#include "veridyn/estimation/estimate.hpp"
+#include "veridyn/estimation/result/estimate.hpp"
 #include "veridyn/vehicle/identification/signals/drive_log.hpp"
 #include "veridyn/vehicle/identification/signals/drive_segments.hpp"
 #include "veridyn/vehicle/identification/validation/drive_open_loop.hpp"

@@ -16,7 +16,7 @@
 #include "veridyn/estimation/judgement/subject_grades.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/io/tables/csv.hpp"
-#include "veridyn/numerics/parallel.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 #include "veridyn/report/aircraft_report.hpp"
 #include "veridyn/report/document/html.hpp"
 

@@ -4,7 +4,7 @@
 
 #include "apps/veridyn/command.hpp"
 #include "apps/veridyn/results/summary.hpp"
-#include "veridyn/estimation/analysis.hpp"
+#include "veridyn/estimation/result/analysis.hpp"
 
 namespace veridyn::app {
 

@@ -6,7 +6,7 @@
 
 #include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/results/output_folder.hpp"
-#include "veridyn/estimation/estimate.hpp"
+#include "veridyn/estimation/result/estimate.hpp"
 
 namespace veridyn::app {
 

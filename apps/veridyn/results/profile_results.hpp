@@ -5,7 +5,7 @@
 #include "apps/veridyn/command.hpp"
 #include "apps/veridyn/results/output_folder.hpp"
 #include "apps/veridyn/results/summary.hpp"
-#include "veridyn/estimation/parameter.hpp"
+#include "veridyn/estimation/result/parameter.hpp"
 #include "veridyn/estimation/uncertainty/profile_likelihood.hpp"
 
 namespace veridyn::app {

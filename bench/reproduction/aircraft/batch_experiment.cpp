@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/numerics/parallel.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::aircraft {
 

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/numerics/parallel.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::aircraft {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "tests/aircraft/campaign/campaign.hpp"
 #include "tests/aircraft/stripped_recording.hpp"
-#include "veridyn/numerics/parallel.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 
 /// Simulated flights stripped of sensors: what each costs, and whether what is still said is true.
 namespace veridyn::aircraft {

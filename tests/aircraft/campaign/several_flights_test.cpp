@@ -13,8 +13,8 @@
 #include "veridyn/aircraft/aircraft_study.hpp"
 #include "veridyn/aircraft/simulation/simulate_study.hpp"
 #include "veridyn/core/constants.hpp"
-#include "veridyn/numerics/parallel.hpp"
 #include "veridyn/numerics/random.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 
 /// Sets of flights of one aircraft whose parameters differ from flight to flight: do the intervals of all flights
 /// together hold the mean?

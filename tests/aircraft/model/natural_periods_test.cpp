@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "tests/aircraft/model/modes.hpp"
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
 #include "veridyn/aircraft/model/trim.hpp"
 #include "veridyn/core/constants.hpp"
@@ -58,7 +59,7 @@ TEST(NaturalPeriods, AreThoseOfTheTwoStatesInTheLinearisedAircraft) {
 TEST(NaturalPeriods, AreNearTheEigenvaluesOfTheWholeMotion) {
   const Subject s = builtin_subject("unatrap");
   const Trim trim = find_trim(s, {.airspeed = 20.0, .density = 1.2});
-  const auto longitudinal = linearise(s, trim).longitudinal_eigenvalues();
+  const auto longitudinal = testing::longitudinal_eigenvalues(linearise(s, trim));
   const double whole = kFullTurn / std::sqrt(std::abs(longitudinal[0] * longitudinal[1]));
   EXPECT_NEAR(natural_periods(s, at_trim(trim), 1.2).short_period_s.value(), whole, 0.1 * whole);
 }

@@ -1,5 +1,6 @@
 #include "veridyn/aircraft/model/trim.hpp"
 
+#include "tests/aircraft/model/modes.hpp"
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
 #include "veridyn/numerics/ode.hpp"
 
@@ -29,8 +30,8 @@ TEST(Trim, MatchesTheIndependentNumbersOfTheSkywalker) {
   EXPECT_NEAR(t.controls.de, -0.06710, 5e-6);
   EXPECT_NEAR(t.controls.throttle, 0.53421, 5e-6);
   const LinearModel m = linearise(s, t);
-  expect_modes(m.longitudinal_eigenvalues(), {-12.926, -4.226, -2.787, -0.101}, 6e-4);
-  expect_modes(m.lateral_eigenvalues(), {-9.278, {-2.795, 4.015}, {-2.795, -4.015}, -0.207}, 6e-4);
+  expect_modes(testing::longitudinal_eigenvalues(m), {-12.926, -4.226, -2.787, -0.101}, 6e-4);
+  expect_modes(testing::lateral_eigenvalues(m), {-9.278, {-2.795, 4.015}, {-2.795, -4.015}, -0.207}, 6e-4);
 }
 
 TEST(Trim, MatchesTheIndependentNumbersOfTheAerosonde) {
@@ -41,8 +42,8 @@ TEST(Trim, MatchesTheIndependentNumbersOfTheAerosonde) {
   EXPECT_NEAR(t.controls.de, 0.06038, 5e-6);
   EXPECT_NEAR(t.controls.throttle, 0.46416, 5e-6);
   const LinearModel m = linearise(s, t);
-  expect_modes(m.longitudinal_eigenvalues(), {{-2.471, 5.093}, {-2.471, -5.093}, -0.384, -0.327}, 6e-4);
-  expect_modes(m.lateral_eigenvalues(), {-60.44, -18.45, -10.43, -0.080}, 6e-3);
+  expect_modes(testing::longitudinal_eigenvalues(m), {{-2.471, 5.093}, {-2.471, -5.093}, -0.384, -0.327}, 6e-4);
+  expect_modes(testing::lateral_eigenvalues(m), {-60.44, -18.45, -10.43, -0.080}, 6e-3);
 }
 
 TEST(Trim, IsFoundForEveryBuiltInAircraftAndReallySteady) {

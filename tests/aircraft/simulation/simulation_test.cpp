@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -178,7 +179,8 @@ TEST(Simulation, SwitchingASensorOffLeavesTheOthersUnchanged) {
   SimulationOptions o = calm("unatrap", 5);
   o.turbulence = dryden_settings("low_moderate", "test");
   const SimulatedFlight all = fly(o);
-  o.sensors[SimulatedSensor::kGyro].enabled = false;
+  const auto gyro = std::ranges::find(sensor_kinds(), "gyro", &SensorKind::name);
+  o.sensors.at(static_cast<std::size_t>(gyro - sensor_kinds().begin())).enabled = false;
   const SimulatedFlight some = fly(o);
   EXPECT_FALSE(some.measured.has("gyro_x"));
   for (const Channel& c : some.measured.channels()) EXPECT_EQ(c.value, all.measured.at(c.name).value) << c.name;

@@ -14,8 +14,8 @@
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
 #include "veridyn/aircraft/track_flight.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/numerics/parallel.hpp"
 #include "veridyn/numerics/random.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::aircraft {
 namespace {

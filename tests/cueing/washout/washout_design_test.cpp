@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <limits>
 #include <set>
 #include <string>
 #include <vector>
@@ -11,6 +14,48 @@
 
 namespace veridyn::cueing {
 namespace {
+
+struct TwoKnobs {
+  std::array<double, 2> gains = {1.0, 1.0};  // may be zero
+  double rate = 2.0;                         // may not
+
+  [[nodiscard]] std::vector<Knob> knobs() {
+    return {{"gain", "1", gains, "", true}, {"tilt_rate", "rad/s", {&rate, 1}, "", false}};
+  }
+};
+
+TwoKnobs turned(const std::string& keys) {
+  const Study study = Study::parse("[washout]\n" + keys, "study.toml");
+  TwoKnobs two;
+  read_knobs(study.root().table("washout"), two.knobs());
+  return two;
+}
+
+TEST(Knobs, AreReadInTheirUnitsAndStayWhereNothingIsSaid) {
+  const TwoKnobs two = turned("gain = [0, 0.5]\ntilt_rate = [\"90 deg/s\"]");
+  EXPECT_EQ(two.gains, (std::array{0.0, 0.5}));
+  EXPECT_NEAR(two.rate, 1.5707963267948966, 1e-15);
+  EXPECT_EQ(turned("gain = [0.3, 0.4]").rate, 2.0);
+}
+
+TEST(Knobs, AreRefusedWithLineAndKey) {
+  EXPECT_EQ(why([] { (void)turned("gain = [1]"); }), "study.toml:2: washout.gain: takes 2 values, has 1");
+  EXPECT_EQ(why([] { (void)turned("gain = [1, 1]\ntilt_rate = [0]"); }),
+            "study.toml:3: washout.tilt_rate: is 0; must be above 0");
+  EXPECT_EQ(why([] { (void)turned("gain = [-1, 1]"); }), "study.toml:2: washout.gain: is -1; must be at least 0");
+}
+
+// Of a design that was made in code.
+TEST(Knobs, OfADesignAreChecked) {
+  EXPECT_EQ(checked(TwoKnobs{.gains = {0.0, 1.0}}).gains[0], 0.0);
+  EXPECT_EQ(why([] { (void)checked(TwoKnobs{.rate = 0.0}); }), "washout.tilt_rate: is 0; must be above 0");
+  EXPECT_EQ(why([] {
+              (void)checked(TwoKnobs{.gains = {1.0, std::nan("")}});
+            }),
+            "washout.gain: is nan; must be at least 0");
+  EXPECT_NE(why([] { (void)checked(TwoKnobs{.rate = std::numeric_limits<double>::infinity()}); }),
+            "nothing was refused");
+}
 
 TEST(WashoutAlgorithms, AreFoundByTheirNames) {
   std::set<std::string_view> names;

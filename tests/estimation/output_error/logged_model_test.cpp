@@ -7,6 +7,7 @@
 
 #include "tests/estimation/output_error/example_models.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "veridyn/estimation/output_error/model_view.hpp"
 #include "veridyn/estimation/output_error/output_error.hpp"
 
 namespace veridyn::estimation {
@@ -15,25 +16,17 @@ namespace {
 using testing_support::FirstOrder;
 
 /// Counts simulations, and stops answering after so many as a killed program would.
-class CountingModel final : public ParametricModel {
+class CountingModel final : public ModelView {
  public:
-  explicit CountingModel(const ParametricModel& model, long most = 1000000) : model_(&model), most_(most) {}
-  [[nodiscard]] std::span<const ModelParameter> parameters() const override { return model_->parameters(); }
-  [[nodiscard]] std::span<const ModelOutput> outputs() const override { return model_->outputs(); }
-  [[nodiscard]] std::size_t segments() const override { return model_->segments(); }
-  [[nodiscard]] Eigen::Index samples(std::size_t s) const override { return model_->samples(s); }
-  [[nodiscard]] std::span<const ModelParameter> initial_conditions(std::size_t s) const override {
-    return model_->initial_conditions(s);
-  }
+  explicit CountingModel(const ParametricModel& model, long most = 1000000) : ModelView(model), most_(most) {}
   [[nodiscard]] bool respond(std::size_t s, const Eigen::VectorXd& theta, std::span<const Eigen::Index> active,
                              ModelResponse& response) const override {
     if (++count > most_) throw std::runtime_error("killed");
-    return model_->respond(s, theta, active, response);
+    return viewed().respond(s, theta, active, response);
   }
   mutable std::atomic<long> count = 0;
 
  private:
-  const ParametricModel* model_;
   long most_;
 };
 

@@ -63,19 +63,6 @@ TEST(FiniteFourierTransform, ConvergesWithTheFourthPowerOfTheStep) {
   EXPECT_NEAR(std::log2(errors[0] / errors[1]), 4.0, 0.5);
 }
 
-TEST(DerivativeTransform, IsTheTransformOfTheDerivative) {
-  std::vector<double> x, dx;
-  const double step = 0.02;
-  for (int k = 0; k <= 400; ++k) {
-    const double t = step * k;
-    x.push_back(2.0 + std::sin(1.3 * t) * std::exp(-0.1 * t));
-    dx.push_back((1.3 * std::cos(1.3 * t) - 0.1 * std::sin(1.3 * t)) * std::exp(-0.1 * t));
-  }
-  const std::vector<double> f{0.1, 0.77, 2.0};
-  const Eigen::VectorXcd a = derivative_transform(x, step, f), b = finite_fourier_transform(dx, step, f);
-  EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 1e-7);  // fourth order: (omega step)^4 11/720 = 1e-6 at most
-}
-
 /// Regressors with power in the band, z = X theta + noise, in segments of unlike length.
 RegressionData flight_like(unsigned seed, double noise, double rho) {
   std::mt19937_64 generator(seed);

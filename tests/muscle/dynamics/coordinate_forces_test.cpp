@@ -29,6 +29,23 @@ TEST(LimitForce, IsNothingInsideAndASpringWithDamperOutside) {
   EXPECT_NEAR(limit_force(limit, 0.0, 3.0), 0.5 * (20.0 * 0.1 - 0.5 * 3.0), 1e-14);
 }
 
+/// Integral of x s(x) from 0 to x with the quintic step s of `limit_force`.
+template <typename Scalar>
+Scalar step_moment(const Scalar& x) {
+  if (!(x > 0.0)) return x * 0.0;
+  if (x >= 1.0) return 0.5 * x * x - 1.0 / 7.0;
+  const Scalar x2 = x * x;
+  return x2 * x2 * x * (x * (x * (6.0 / 7.0) - 2.5) + 2.0);
+}
+
+/// Energy stored in the limit's springs [J].
+template <typename Scalar>
+Scalar limit_energy(const CoordinateLimitForce& limit, const Scalar& q) {
+  const double unit = limit.transition * limit.transition;
+  return limit.upper_stiffness * unit * step_moment(Scalar((q - limit.upper_limit) / limit.transition)) +
+         limit.lower_stiffness * unit * step_moment(Scalar((limit.lower_limit - q) / limit.transition));
+}
+
 TEST(LimitForce, IsMinusTheSlopeOfItsEnergyAndHasTwoContinuousDerivatives) {
   using Jet = ceres::Jet<double, 1>;
   const CoordinateLimitForce limit = elbow_limit();

@@ -79,7 +79,11 @@ TEST(LoopSolver, GeneralizedForcesAreTheRowsTimesTheirMultipliers) {
   EXPECT_LT((tau - A.transpose() * lambda).norm(), 1e-14);
   // By link: the same power in any motion.
   std::vector<SpatialVector<double>> by_link(static_cast<std::size_t>(linkage.mechanism.links()));
-  solver.add_forces(by_link.data());
+  for (int r = 0; r < solver.rows(); ++r) {
+    const LoopConstraints::Constraint& constraint = solver.loops().of_row(r);
+    by_link[static_cast<std::size_t>(constraint.link_2)].add_scaled(solver.multiplier(r), solver.row(r).force);
+    by_link[static_cast<std::size_t>(constraint.link_1)].add_scaled(-solver.multiplier(r), solver.row(r).force);
+  }
   Eigen::Vector3d from_links = Eigen::Vector3d::Zero();
   for (int link = 1; link < linkage.mechanism.links(); ++link)
     for (const int c : linkage.mechanism.ancestors(link))

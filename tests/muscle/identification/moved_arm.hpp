@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/muscle/identification/parameter_name.hpp"
 #include "veridyn/muscle/identification/emg_driven_model.hpp"
 #include "veridyn/muscle/identification/muscle_parametric_model.hpp"
 
@@ -31,8 +32,7 @@ inline MuscleControls column_of(const ControlSignals& all, std::size_t column) {
 /// The unknowns of these names.
 inline std::vector<MuscleUnknown> unknowns_of(const Model& model, const std::vector<std::string>& names) {
   std::vector<MuscleUnknown> unknowns;
-  for (const std::string& name : names)
-    unknowns.push_back(unknown_of(model, parse_parameter_name(model, name, "test")));
+  for (const std::string& name : names) unknowns.push_back(unknown_of(model, parameter_named(model, name)));
   return unknowns;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/muscle/identification/arm_segments.hpp"
+#include "tests/muscle/identification/parameter_name.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/estimation/output_error/output_error.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
@@ -42,8 +43,8 @@ TEST(MuscleParametricModel, TheSharedOutputErrorEstimatorRecoversHiddenParameter
     measured.push_back(response.output);
   }
   const MuscleParametricModel model(generic,
-                                    {parse_parameter_name(generic.model(), "biceps_long.tendon_slack_length", "test"),
-                                     parse_parameter_name(generic.model(), "brachialis.max_isometric_force", "test")},
+                                    {test::parameter_named(generic.model(), "biceps_long.tendon_slack_length"),
+                                     test::parameter_named(generic.model(), "brachialis.max_isometric_force")},
                                     segments(generic));
   const estimation::OutputErrorEstimate estimate =
       estimation::output_error(model, measured,
@@ -173,18 +174,6 @@ TEST(MuscleParametricModel, OneTaskLeavesWhatItDoesNotDetermineWhereItWas) {
   const double held = largest_move(true), wandering = largest_move(false);
   EXPECT_LT(held, 0.15);
   EXPECT_GT(wandering, 1.5 * held);
-}
-
-TEST(MuscleParametricModel, WrongNamesGetTheNearestOne) {
-  const Model model = load_model("arm").model();
-  try {
-    (void)parse_parameter_name(model, "biceps_long.optimal_fibre_length", "study.toml:3: subject.parameters");
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("did you mean 'optimal_fiber_length'"));
-  }
-  EXPECT_THROW((void)parse_parameter_name(model, "soleus.optimal_fiber_length", "x"), InputError);
-  EXPECT_THROW((void)parse_parameter_name(model, "soleus", "x"), InputError);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/muscle/identification/arm_segments.hpp"
+#include "tests/muscle/identification/parameter_name.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
 #include "veridyn/muscle/simulation/forward_simulation.hpp"
 
@@ -23,7 +24,7 @@ TEST_P(MuscleSensitivities, AreThoseOfCentralDifferences) {
                            "biceps_long.tendon_slack_length", "triceps_long.optimal_fiber_length",
                            "triceps_long.pennation_angle_at_optimal", "brachialis.max_contraction_velocity",
                            "brachialis.activation_time_constant", "brachialis.tendon_slack_length"}) {
-    names.push_back(parse_parameter_name(system.model(), name, "test"));
+    names.push_back(test::parameter_named(system.model(), name));
   }
   // A step of the excitations, so that the activation's time constant shows.
   MotionSegment segment = segment_of(system, 0.6, std::vector<double>(6, 0.05), 0.12);

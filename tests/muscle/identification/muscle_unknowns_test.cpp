@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "tests/muscle/identification/parameter_name.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
 
@@ -30,7 +31,7 @@ std::string unknown_error(const MuscleUnknownSpec& spec) {
 
 TEST(MuscleUnknown, OfOneParameterStartsAtTheModelsValue) {
   const MuscleUnknown u =
-      unknown_of(unknowns_arm(), parse_parameter_name(unknowns_arm(), "brachialis.max_isometric_force", "x"));
+      unknown_of(unknowns_arm(), test::parameter_named(unknowns_arm(), "brachialis.max_isometric_force"));
   const double value =
       unknowns_arm().muscles[unknowns_arm().muscle("brachialis")].parameters.musculotendon.max_isometric_force;
   EXPECT_EQ(u.name, "brachialis.max_isometric_force");

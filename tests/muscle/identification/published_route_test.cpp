@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/estimation/output_error/model_view.hpp"
 #include "veridyn/estimation/output_error/output_error.hpp"
 #include "veridyn/muscle/identification/task_segments.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
@@ -59,25 +60,15 @@ class HiddenPerson {
 };
 
 /// Counts the responses of a model: those without and with sensitivities.
-class CountedModel final : public estimation::ParametricModel {
+class CountedModel final : public estimation::ModelView {
  public:
-  explicit CountedModel(const MuscleParametricModel& model) : model_(model) {}
-  [[nodiscard]] std::span<const estimation::ModelParameter> parameters() const override { return model_.parameters(); }
-  [[nodiscard]] std::span<const estimation::ModelOutput> outputs() const override { return model_.outputs(); }
-  [[nodiscard]] std::size_t segments() const override { return model_.segments(); }
-  [[nodiscard]] Eigen::Index samples(std::size_t s) const override { return model_.samples(s); }
-  [[nodiscard]] std::span<const estimation::ModelParameter> initial_conditions(std::size_t s) const override {
-    return model_.initial_conditions(s);
-  }
+  explicit CountedModel(const MuscleParametricModel& model) : ModelView(model) {}
   [[nodiscard]] bool respond(std::size_t s, const Eigen::VectorXd& theta, std::span<const Eigen::Index> active,
                              estimation::ModelResponse& response) const override {
     ++count;
-    return model_.respond(s, theta, active, response);
+    return viewed().respond(s, theta, active, response);
   }
   mutable std::atomic<std::size_t> count = 0;
-
- private:
-  const MuscleParametricModel& model_;
 };
 
 TEST(PublishedRoute, FindsTheHiddenPersonAsTheGradientDoesWithManyMoreSimulations) {

@@ -10,7 +10,7 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
 #include "veridyn/muscle/osim/osim_reader.hpp"
-#include "veridyn/numerics/parallel.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::muscle {
 namespace {

@@ -85,7 +85,10 @@ TEST(CausalFilter, DoesNotAllocate) {
 }
 
 TEST(CausalFilter, RefusesWhatItCannotHold) {
-  EXPECT_THROW(CausalFilter(alongside(realise(low_pass(1.0)), realise(low_pass(2.0)))), InputError);
+  StateSpace two_outputs = realise(low_pass(1.0));
+  two_outputs.C = two_outputs.C.replicate(2, 1).eval();
+  two_outputs.D = two_outputs.D.replicate(2, 1).eval();
+  EXPECT_THROW(CausalFilter{two_outputs}, InputError);
   TransferFunction seven = low_pass(1.0);
   for (int i = 0; i < 6; ++i) seven = seven * low_pass(1.0);
   EXPECT_THROW(CausalFilter{seven}, InputError);

@@ -13,7 +13,7 @@
 
 #include "tests/support/thread_ranks.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/numerics/parallel.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::numerics {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "tests/reproduction/aircraft/experiment_flight.hpp"
+#include "tests/support/elevator_flight.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 using estimation::Method;
 
 BatchExperiment run(const std::string& experiment, Progress& progress) {
-  const Study study = Study::parse(fmt::format("{}{}", kExperimentFlight, experiment), "test.toml");
+  const Study study = Study::parse(fmt::format("{}{}", test::elevator_flight(3), experiment), "test.toml");
   return run_batch_experiment(ExperimentOptions::read(study.root()), {Method::kOls, Method::kGtls}, progress);
 }
 

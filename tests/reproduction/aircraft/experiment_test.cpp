@@ -5,14 +5,14 @@
 
 #include <cmath>
 
-#include "tests/reproduction/aircraft/experiment_flight.hpp"
+#include "tests/support/elevator_flight.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::aircraft {
 namespace {
 
 ExperimentOptions options_of(const std::string& more) {
-  return ExperimentOptions::read(Study::parse(fmt::format("{}{}", kExperimentFlight, more), "test.toml").root());
+  return ExperimentOptions::read(Study::parse(fmt::format("{}{}", test::elevator_flight(3), more), "test.toml").root());
 }
 
 TEST(Experiment, HasExactRowsAndNoiseOfTheStatedSize) {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "tests/reproduction/aircraft/experiment_flight.hpp"
+#include "tests/support/elevator_flight.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::aircraft {
@@ -15,7 +15,7 @@ TEST(Reproduction, FailsWhenAResultDoesNotShow) {
   Progress silent;
   // Ordinary least squares with exact regressors is not biased: the study claims that it is.
   const std::string study =
-      fmt::format("title = \"wrong\"\n{}{}", kExperimentFlight,
+      fmt::format("title = \"wrong\"\n{}{}", test::elevator_flight(3),
                   "[experiment]\ncoefficient = \"CL\"\nmethods = [\"OLS\"]\nseeds = 30\nsnr = 30\n"
                   "[expect]\nbiased = \"OLS\"\n");
   const Reproduction result = reproduce(Study::parse(study, "test.toml").root(), silent);
@@ -60,7 +60,7 @@ TEST(Reproduction, NoFalseAlarmStatesTheExposureThatItsRateNeeds) {
       "title = \"alarms\"\n{}[experiment]\ncoefficient = \"Cm\"\nseeds = 9\nrate = 50\nsnr = 30\n"
       "regressor_snr = 25\n[[experiment.tracker]]\nname = \"T\"\ndetection_learning = \"20 s\"\n"
       "[expect]\nno_false_alarm = [\"T\"]\nfalse_alarm_rate = [\"T\"]\n",
-      kExperimentFlight);
+      test::elevator_flight(3));
   const Reproduction result = reproduce(Study::parse(study, "test.toml").root(), silent);
   // Nine times 40 s, 0.1 hours: no more than 30 an hour (3/T) with 95 %, where one in ten hours is stated.
   EXPECT_NEAR(result.tracking->unchanged_hours(0, 30.0), 0.1, 1e-3);
@@ -73,7 +73,7 @@ TEST(Reproduction, NoFalseAlarmStatesTheExposureThatItsRateNeeds) {
 
 TEST(Reproduction, RefusesAMisspeltExpectation) {
   Progress silent;
-  const std::string study = fmt::format("title = \"wrong\"\n{}{}", kExperimentFlight,
+  const std::string study = fmt::format("title = \"wrong\"\n{}{}", test::elevator_flight(3),
                                         "[experiment]\ncoefficient = \"CL\"\nmethods = [\"OLS\"]\nseeds = 3\n"
                                         "[expect]\nunbiassed = \"OLS\"\n");
   EXPECT_THROW((void)reproduce(Study::parse(study, "test.toml").root(), silent), InputError);

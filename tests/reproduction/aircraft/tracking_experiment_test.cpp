@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "tests/reproduction/aircraft/experiment_flight.hpp"
+#include "tests/support/elevator_flight.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 TEST(TrackingExperiment, SettlesWhereItIsExcitedAndNeverWhereItIsBiased) {
   Progress silent;
   const std::string study =
-      fmt::format("{}{}", kExperimentFlight,
+      fmt::format("{}{}", test::elevator_flight(3),
                   "[experiment]\ncoefficient = \"Cm\"\nseeds = 2\nrate = 50\nsnr = 30\nregressor_snr = 15\n"
                   "[[experiment.tracker]]\nname = \"OLS\"\nmethod = \"OLS\"\nlambda = 1.0\n"
                   "forgetting = \"constant\"\n"

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "veridyn/numerics/parallel.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::vehicle {
 namespace {

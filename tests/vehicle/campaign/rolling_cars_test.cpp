@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "tests/vehicle/campaign/campaign.hpp"
-#include "veridyn/numerics/parallel.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::vehicle {
 namespace {

@@ -12,7 +12,7 @@
 #include "tests/support/channel_faults.hpp"
 #include "tests/vehicle/campaign/campaign.hpp"
 #include "tests/vehicle/campaign/rolling_cars.hpp"
-#include "veridyn/numerics/parallel.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 #include "veridyn/vehicle/identification/evidence/drive_evidence.hpp"
 
 /// How late a recorded steering is, by the model that is identified: the source of the limit.
@@ -59,13 +59,14 @@ TEST(SteeringDelaySoak, IsFoundAndNotRaisedWhereThereIsNone) {
   std::vector<Found> results(subjects.size() * kDrives * kLate_s.size());
   const auto study_of = [&](std::size_t subject, std::size_t drive) {
     if (subjects[subject] != "rolling car") return testing::campaign_drive(subjects[subject], 500 + drive);
-    return testing::rolling_drive(testing::rolling_car(drive / testing::kRollingDrives), testing::CarTyre::kFiala, drive,
-                                  500 + drive);
+    return testing::rolling_drive(testing::rolling_car(drive / testing::kRollingDrives), testing::CarTyre::kFiala,
+                                  drive, 500 + drive);
   };
   numerics::parallel_for(results.size(), 0, [&](std::size_t k) {
     const std::size_t drive = k / kLate_s.size();
     results[k] = found(study_of(drive / kDrives, drive % kDrives), kLate_s[k % kLate_s.size()]);
-    fmt::print(stderr, "{} {} {} {} {} {}\n", k, results[k].delay_s, to_string(results[k].outcome), to_string(results[k].structure), results[k].I_z_error, results[k].advice);
+    fmt::print(stderr, "{} {} {} {} {} {}\n", k, results[k].delay_s, to_string(results[k].outcome),
+               to_string(results[k].structure), results[k].I_z_error, results[k].advice);
   });
   std::ofstream table("steering_delay.csv");
   table << "subject,drive,late_s,refused,delay_s,outcome,structure,I_z_error\n";

@@ -9,7 +9,7 @@
 
 #include "tests/vehicle/campaign/rolling_cars.hpp"
 #include "veridyn/core/constants.hpp"
-#include "veridyn/numerics/parallel.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 #include "veridyn/vehicle/track_drive.hpp"
 
 /// Cars that lean, tracked: what a loss of grip looks like in them, and that nothing else does.

@@ -134,7 +134,7 @@ VehicleTrajectory magic_drive(const VehicleParameters<double>& p, double mu, dou
 TEST(VehicleIdentification, FindsFrictionAndShapeOfMagicFormulaTyresDrivenHard) {
   const VehicleParameters<double> p = family_car();
   VehicleIdentifyOptions options;
-  options.model.tyre = DriveTyre::kMagicFormula;
+  options.model.tyre = kDriveTyre<SimpleMagicFormulaTyre>;
   options.model.free[DriveUnknown::kMu] = true;
   options.model.free[DriveUnknown::kShape] = true;
   const VehicleIdentification id = identify(magic_drive(p, 0.9, 0.04), reference_drive_sensors(), 1, options);
@@ -150,7 +150,7 @@ TEST(VehicleIdentification, FindsFrictionAndShapeOfMagicFormulaTyresDrivenHard) 
 TEST(VehicleIdentification, DoesNotClaimFrictionFromTheLinearRange) {
   const VehicleParameters<double> p = family_car();
   VehicleIdentifyOptions options;
-  options.model.tyre = DriveTyre::kMagicFormula;
+  options.model.tyre = kDriveTyre<SimpleMagicFormulaTyre>;
   options.model.free[DriveUnknown::kMu] = true;
   options.model.free[DriveUnknown::kShape] = true;
   const VehicleIdentification id = identify(magic_drive(p, 0.9, 0.004), reference_drive_sensors(), 1, options);

@@ -17,8 +17,8 @@
 #include "veridyn/aircraft/identification/rows/flight_rows.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/judgement/agreement.hpp"
-#include "veridyn/numerics/parallel.hpp"
 #include "veridyn/numerics/statistics.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::aircraft {
 namespace {

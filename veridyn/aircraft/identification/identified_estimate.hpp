@@ -6,7 +6,7 @@
 #include "veridyn/aircraft/identification/fit/coefficient_result.hpp"
 #include "veridyn/aircraft/identification/output_error/axis_output_error.hpp"
 #include "veridyn/aircraft/model/subject.hpp"
-#include "veridyn/estimation/estimate.hpp"
+#include "veridyn/estimation/result/estimate.hpp"
 
 /// What was identified, as the subject of a simulation and as an estimate.
 namespace veridyn::aircraft {

@@ -6,7 +6,7 @@
 
 #include "veridyn/aircraft/identification/identification.hpp"
 #include "veridyn/core/progress.hpp"
-#include "veridyn/estimation/estimate.hpp"
+#include "veridyn/estimation/result/estimate.hpp"
 
 namespace veridyn::aircraft {
 

@@ -8,7 +8,7 @@
 #include "veridyn/aircraft/identification/identification.hpp"
 #include "veridyn/aircraft/identification/other_estimators.hpp"
 #include "veridyn/aircraft/identification/validation/validation.hpp"
-#include "veridyn/estimation/analysis.hpp"
+#include "veridyn/estimation/result/analysis.hpp"
 
 /// The results of an aircraft's coefficients in the terms that all domains share, as reports, tables and console read
 /// them.

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "veridyn/aircraft/model/subject.hpp"
-#include "veridyn/estimation/estimate.hpp"
+#include "veridyn/estimation/result/estimate.hpp"
 
 namespace veridyn::aircraft {
 

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/numerics/linear_algebra/general_eigen.hpp"
 #include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 
 namespace veridyn::aircraft {
@@ -62,23 +61,6 @@ Eigen::Matrix<Scalar, 6, 1> accelerations(const Subject& s, const MassProperties
                                           const Eigen::Matrix<Scalar, 6, 1>& unknown, const TrimCondition& at) {
   const State8<Scalar> x = level_state(unknown(0), unknown(1), at);
   return body_axes_rate<Scalar>(s, body, x, unknown.template tail<4>(), at).template head<6>();
-}
-
-std::vector<std::complex<double>> sorted_eigenvalues(const Eigen::Matrix4d& A) {
-  const Eigen::VectorXcd values = numerics::general_eigenvalues(A);
-  std::vector<std::complex<double>> out(values.data(), values.data() + 4);
-  std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) {
-    const double na = std::abs(a), nb = std::abs(b);
-    return std::abs(na - nb) > 1e-9 * (na + nb) ? na > nb : a.imag() > b.imag();
-  });
-  return out;
-}
-
-Eigen::Matrix4d block(const Eigen::Matrix<double, 8, 8>& A, const std::array<int, 4>& index) {
-  Eigen::Matrix4d out;
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j) out(i, j) = A(index[i], index[j]);
-  return out;
 }
 
 }  // namespace
@@ -184,14 +166,6 @@ LinearModel linearise(const Subject& s, const Trim& trim) {
     model.B.row(i) = rate(i).v.tail<4>().transpose();
   }
   return model;
-}
-
-std::vector<std::complex<double>> LinearModel::longitudinal_eigenvalues() const {
-  return sorted_eigenvalues(block(A, {0, 2, 4, 7}));
-}
-
-std::vector<std::complex<double>> LinearModel::lateral_eigenvalues() const {
-  return sorted_eigenvalues(block(A, {1, 3, 5, 6}));
 }
 
 }  // namespace veridyn::aircraft

@@ -1,9 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <complex>
 #include <string>
-#include <vector>
 
 #include "veridyn/aircraft/model/atmosphere.hpp"
 #include "veridyn/aircraft/model/flight_dynamics.hpp"
@@ -50,10 +48,6 @@ struct Trim {
 struct LinearModel {
   Eigen::Matrix<double, 8, 8> A;
   Eigen::Matrix<double, 8, 4> B;
-  /// Of u, w, q, theta alone [1/s], by falling magnitude.
-  [[nodiscard]] std::vector<std::complex<double>> longitudinal_eigenvalues() const;
-  /// Of v, p, r, phi alone.
-  [[nodiscard]] std::vector<std::complex<double>> lateral_eigenvalues() const;
 };
 
 /// Derivatives at a trim by automatic differentiation; a rotor is taken to follow the throttle at once, density not to

@@ -7,8 +7,8 @@
 
 #include "veridyn/aircraft/sensors/channel_map.hpp"
 #include "veridyn/core/study.hpp"
-#include "veridyn/estimation/estimate.hpp"
 #include "veridyn/estimation/regression/regression.hpp"
+#include "veridyn/estimation/result/estimate.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::aircraft {

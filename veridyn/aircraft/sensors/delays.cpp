@@ -14,8 +14,8 @@
 #include "veridyn/aircraft/model/still_air_rate.hpp"
 #include "veridyn/aircraft/sensors/vane_kinematics.hpp"
 #include "veridyn/core/constants.hpp"
-#include "veridyn/numerics/parallel.hpp"
 #include "veridyn/numerics/rotation.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::aircraft {
 namespace {

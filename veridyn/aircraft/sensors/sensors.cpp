@@ -53,56 +53,44 @@ SensorSettings read_sensor(const StudyTable& t, const SensorKind& kind, SensorSe
   return s;
 }
 
+/// The same noise on all channels.
+constexpr SensorSettings sampled(double rate, double sigma) {
+  return {.rate = rate, .sigma = {sigma, sigma, sigma, sigma}};
+}
+
 }  // namespace
 
-const EnumArray<SimulatedSensor, SensorKind, kSensorKinds>& sensor_kinds() {
+std::span<const SensorKind> sensor_kinds() {
   using T = Truth;
-  static constexpr EnumArray<SimulatedSensor, SensorKind, kSensorKinds> kKinds = {{{
-      {"accelerometer", "m/s^2", 3, {T::kImuAccelX, T::kImuAccelY, T::kImuAccelZ}, {"accel_x", "accel_y", "accel_z"}},
-      {"gyro", "rad/s", 3, {T::kGyroX, T::kGyroY, T::kGyroZ}, {"gyro_x", "gyro_y", "gyro_z"}},
-      {"ahrs", "rad", 3, {T::kRoll, T::kPitch, T::kYaw}, {"roll", "pitch", "yaw"}},
-      {"magnetometer", "T", 3, {T::kMagX, T::kMagY, T::kMagZ}, {"mag_x", "mag_y", "mag_z"}},
-      {"gps_velocity", "m/s", 3, {T::kVelNorth, T::kVelEast, T::kVelDown}, {"vel_north", "vel_east", "vel_down"}},
-      {"gps_position", "m", 3, {T::kPosNorth, T::kPosEast, T::kPosDown}, {"pos_north", "pos_east", "pos_down"}},
-      {"barometer", "Pa", 1, {T::kStaticPressure}, {"static_pressure"}},
-      {"thermometer", "K", 1, {T::kAirTemperature}, {"air_temperature"}},
-      {"pitot", "Pa", 1, {T::kDynamicPressure}, {"dynamic_pressure"}},
-      {"alpha_vane", "rad", 1, {T::kAlpha}, {"alpha"}},
-      {"beta_vane", "rad", 1, {T::kBeta}, {"beta"}},
-      {"servos",
-       "1",
-       4,
-       {T::kElevator, T::kAileron, T::kRudder, T::kThrottle},
-       {"elevator", "aileron", "rudder", "throttle"}},
-      {"tachometer", "rad/s", 1, {T::kEngineSpeed}, {"engine_speed"}},
-      {"thrust", "N", 1, {T::kThrust}, {"thrust"}},
-  }}};
+  // clang-format off
+  static constexpr std::array kKinds = std::to_array<SensorKind>({
+      {"accelerometer", "m/s^2", 3, {T::kImuAccelX, T::kImuAccelY, T::kImuAccelZ}, {"accel_x", "accel_y", "accel_z"},
+       sampled(100, 0.05)},
+      {"gyro", "rad/s", 3, {T::kGyroX, T::kGyroY, T::kGyroZ}, {"gyro_x", "gyro_y", "gyro_z"},
+       sampled(100, 0.35 * kDegree)},
+      {"ahrs", "rad", 3, {T::kRoll, T::kPitch, T::kYaw}, {"roll", "pitch", "yaw"}, sampled(100, 0.75 * kDegree)},
+      {"magnetometer", "T", 3, {T::kMagX, T::kMagY, T::kMagZ}, {"mag_x", "mag_y", "mag_z"}, sampled(50, 0.2e-6)},
+      {"gps_velocity", "m/s", 3, {T::kVelNorth, T::kVelEast, T::kVelDown}, {"vel_north", "vel_east", "vel_down"},
+       {.rate = 20, .sigma = {0.05, 0.05, 0.1}}},
+      {"gps_position", "m", 3, {T::kPosNorth, T::kPosEast, T::kPosDown}, {"pos_north", "pos_east", "pos_down"},
+       {.rate = 20, .sigma = {1.0, 1.0, 2.0}}},
+      {"barometer", "Pa", 1, {T::kStaticPressure}, {"static_pressure"}, sampled(20, 5.0)},
+      {"thermometer", "K", 1, {T::kAirTemperature}, {"air_temperature"}, sampled(20, 0.25)},
+      {"pitot", "Pa", 1, {T::kDynamicPressure}, {"dynamic_pressure"}, sampled(100, 10.0)},
+      {"alpha_vane", "rad", 1, {T::kAlpha}, {"alpha"}, sampled(100, 0.6 * kDegree)},
+      {"beta_vane", "rad", 1, {T::kBeta}, {"beta"}, sampled(100, 0.6 * kDegree)},
+      {"servos", "1", 4, {T::kElevator, T::kAileron, T::kRudder, T::kThrottle},
+       {"elevator", "aileron", "rudder", "throttle"}, sampled(100, 0.0)},
+      {"tachometer", "rad/s", 1, {T::kEngineSpeed}, {"engine_speed"}, sampled(100, 0.0)},
+      {"thrust", "N", 1, {T::kThrust}, {"thrust"}, {.enabled = false, .rate = 100}},
+  });
+  // clang-format on
   return kKinds;
 }
 
 SensorSet reference_sensors() {
-  using enum SimulatedSensor;
   SensorSet set;
-  const auto give = [&set](SimulatedSensor which, double rate, std::array<double, 4> sigma) {
-    set[which].rate = rate;
-    set[which].sigma = sigma;
-  };
-  const auto each = [](double s) { return std::array<double, 4>{s, s, s, s}; };
-  give(kAccelerometer, 100, each(0.05));
-  give(kGyro, 100, each(0.35 * kDegree));
-  give(kAhrs, 100, each(0.75 * kDegree));
-  give(kMagnetometer, 50, each(0.2e-6));
-  give(kGpsVelocity, 20, {0.05, 0.05, 0.1, 0});
-  give(kGpsPosition, 20, {1.0, 1.0, 2.0, 0});
-  give(kBarometer, 20, each(5.0));
-  give(kThermometer, 20, each(0.25));
-  give(kPitot, 100, each(10.0));
-  give(kAlphaVane, 100, each(0.6 * kDegree));
-  give(kBetaVane, 100, each(0.6 * kDegree));
-  give(kServos, 100, each(0.0));
-  give(kTachometer, 100, each(0.0));
-  give(kThrust, 100, each(0.0));
-  set[kThrust].enabled = false;
+  for (const SensorKind& kind : sensor_kinds()) set.push_back(kind.reference);
   return set;
 }
 
@@ -119,9 +107,9 @@ SensorSet read_sensors(const StudyTable& table) {
       table.fail(key, fmt::format("unknown sensor{}", suggestion(key, names)));
     }
   }
-  for (const SimulatedSensor which : enumerators<SimulatedSensor, kSensorKinds>()) {
-    const SensorKind& kind = sensor_kinds()[which];
-    set[which] = read_sensor(table.table_or_empty(kind.name), kind, set[which]);
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    const SensorKind& kind = sensor_kinds()[i];
+    set[i] = read_sensor(table.table_or_empty(kind.name), kind, set[i]);
   }
   return set;
 }

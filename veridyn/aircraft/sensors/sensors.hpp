@@ -2,12 +2,12 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "veridyn/aircraft/sensors/flight_truth.hpp"
-#include "veridyn/core/enum_array.hpp"
 #include "veridyn/core/recording.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/numerics/random.hpp"
@@ -31,38 +31,21 @@ struct SensorSettings {
   friend bool operator==(const SensorSettings&, const SensorSettings&) = default;
 };
 
-/// A kind of sensor and what it measures.
+/// A kind of sensor, what it measures, and how well in the reference set.
 struct SensorKind {
   std::string_view name;
   std::string_view unit;  ///< of noise and biases
   std::size_t channels;
   std::array<Truth, 4> source;
   std::array<std::string_view, 4> channel;
+  SensorSettings reference;
 };
 
 /// All sensors that can be simulated.
-enum class SimulatedSensor {
-  kAccelerometer,
-  kGyro,
-  kAhrs,
-  kMagnetometer,
-  kGpsVelocity,
-  kGpsPosition,
-  kBarometer,
-  kThermometer,
-  kPitot,
-  kAlphaVane,
-  kBetaVane,
-  kServos,
-  kTachometer,
-  kThrust
-};
-inline constexpr std::size_t kSensorKinds = 14;  ///< values of SimulatedSensor
-/// What each of them is.
-[[nodiscard]] const EnumArray<SimulatedSensor, SensorKind, kSensorKinds>& sensor_kinds();
+[[nodiscard]] std::span<const SensorKind> sensor_kinds();
 
-/// Settings of every sensor.
-using SensorSet = EnumArray<SimulatedSensor, SensorSettings, kSensorKinds>;
+/// Settings of every sensor, in the order of `sensor_kinds()`.
+using SensorSet = std::vector<SensorSettings>;
 
 /// The reference set (two standard deviations): accelerometer 0.1 m/s^2, gyro 0.7 deg/s, AHRS angles 1.5 deg, pitot 20
 /// Pa, vanes 1.2 deg at 100 Hz; GPS velocity 0.1 m/s (down 0.2) at 20 Hz. Ours for the rest: GPS position 2 m (down 4

@@ -24,15 +24,9 @@ namespace {
 /// Inputs of an axis: mass, cradle mass, filar distance, length, cradle length, offset, frequency, cradle frequency.
 constexpr int kInputs = 8;
 
+/// The terms for values of the inputs `v`.
 template <typename Scalar>
-struct Terms {
-  Scalar whole, cradle, transfer;
-  [[nodiscard]] Scalar sum() const { return whole - cradle - transfer; }
-};
-
-/// The three terms of the inertia: suspension with the aircraft, cradle alone, parallel axis.
-template <typename Scalar>
-Terms<Scalar> terms_of(const SwingAxis& axis, double g, bool with_cradle, const Scalar* v) {
+SwingTerms<Scalar> terms_of(const SwingAxis& axis, double g, bool with_cradle, const Scalar* v) {
   const Scalar &m = v[0], &mc = v[1], &d = v[2], &L = v[3], &Lc = v[4], &w = v[6], &wc = v[7];
   const Scalar total = m + mc;
   if (axis.suspension == Suspension::kBifilar) {
@@ -155,7 +149,7 @@ Eigen::RowVectorXd jacobian_of(const SwingTest& test, const AxisInertia& i) {
   const Eigen::VectorXd v = values_of(test, i.test, i.frequency, i.cradle_frequency);
   std::array<Jet, kInputs> jets;
   for (int k = 0; k < kInputs; ++k) jets[k] = Jet(v(k), k);
-  return terms_of(i.test, test.gravity, with_cradle(test), jets.data()).sum().v.transpose();
+  return terms_of(i.test, test.gravity, with_cradle(test), jets.data()).inertia().v.transpose();
 }
 
 /// The distribution of its error, from those of all that was measured.
@@ -168,7 +162,7 @@ estimation::ErrorDistribution error_of(const SwingTest& test, const AxisInertia&
   inputs.error_covariance = sigma_of(test, i).cwiseAbs2().asDiagonal();
   const double g = test.gravity;
   const bool cradle = with_cradle(test);
-  const auto f = [&](const double* x, double* y) { y[0] = terms_of(i.test, g, cradle, x).sum(); };
+  const auto f = [&](const double* x, double* y) { y[0] = terms_of(i.test, g, cradle, x).inertia(); };
   const estimation::MonteCarloOptions options{.draws = test.draws, .seed = test.seed, .threads = threads};
   return estimation::propagate_errors(inputs, 1, f, options).outputs[0];
 }
@@ -205,9 +199,8 @@ AxisInertia analysed(const SwingTest& test, const SwingAxis& axis, int threads) 
     for (SwingRun& run : fitted_runs(test, axis, true)) i.runs.push_back(std::move(run));
     std::tie(i.cradle_frequency, i.sigma_cradle_frequency) = mean_frequency(i.runs, true);
   }
-  const Eigen::VectorXd v = values_of(test, axis, i.frequency, i.cradle_frequency);
-  const Terms<double> terms = terms_of(axis, test.gravity, with_cradle(test), v.data());
-  i.value = terms.sum();
+  const SwingTerms<double> terms = swing_terms(test, axis, i.frequency, i.cradle_frequency);
+  i.value = terms.inertia();
   i.largest_term = std::max({terms.whole, terms.cradle, terms.transfer});
   const Eigen::RowVectorXd jacobian = jacobian_of(test, i);
   const Eigen::VectorXd parts = jacobian.transpose().cwiseProduct(sigma_of(test, i));
@@ -403,9 +396,10 @@ const AxisInertia* SwingTestResult::find(char axis) const {
   return found == axes.end() ? nullptr : &*found;
 }
 
-double swing_inertia(const SwingTest& test, const SwingAxis& axis, double frequency, double cradle_frequency) {
+SwingTerms<double> swing_terms(const SwingTest& test, const SwingAxis& axis, double frequency,
+                               double cradle_frequency) {
   const Eigen::VectorXd v = values_of(test, axis, frequency, cradle_frequency);
-  return terms_of(axis, test.gravity, test.cradle_mass > 0.0, v.data()).sum();
+  return terms_of(axis, test.gravity, with_cradle(test), v.data());
 }
 
 SwingTestResult analyse_swing_test(const SwingTest& test, Progress& progress) {

@@ -12,7 +12,7 @@
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/recording.hpp"
 #include "veridyn/core/study.hpp"
-#include "veridyn/estimation/estimate.hpp"
+#include "veridyn/estimation/result/estimate.hpp"
 #include "veridyn/estimation/uncertainty/damped_cosine.hpp"
 #include "veridyn/estimation/uncertainty/monte_carlo.hpp"
 
@@ -132,11 +132,17 @@ struct SwingTestResult {
   [[nodiscard]] const AxisInertia* find(char axis) const;
 };
 
-/// Moment of inertia about one axis [kg m^2] from masses, lengths and undamped frequencies: aircraft in its cradle less
-/// the cradle (each about the same line), for a pendulum moved to the aircraft's centre of gravity by the parallel
-/// axis theorem.
-[[nodiscard]] double swing_inertia(const SwingTest& test, const SwingAxis& axis, double frequency,
-                                   double cradle_frequency);
+/// Terms of the moment of inertia about one axis [kg m^2]: aircraft in its cradle less the cradle (each about the same
+/// line), for a pendulum moved to the aircraft's centre of gravity by the parallel axis theorem.
+template <typename Scalar>
+struct SwingTerms {
+  Scalar whole, cradle, transfer;
+  [[nodiscard]] Scalar inertia() const { return whole - cradle - transfer; }
+};
+
+/// They follow from masses, lengths and undamped frequencies [rad/s].
+[[nodiscard]] SwingTerms<double> swing_terms(const SwingTest& test, const SwingAxis& axis, double frequency,
+                                             double cradle_frequency);
 
 /// Reads and fits all runs, and judges. A run without a swing is left out with a warning.
 /// @throws InputError for unreadable files, or an axis without a single usable run.

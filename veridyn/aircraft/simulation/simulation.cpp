@@ -280,7 +280,7 @@ SimulatedFlight simulate(const SimulationOptions& o, Progress& progress) {
   Autopilot pilot(o.subject, flight.trim, linear, o.altitude, o.heading, o.excitation_gain);
   FlyingAircraft aircraft(o, flight.trim);
   std::vector<Sensor> sensors;
-  for (std::size_t i = 0; i < kSensorKinds; ++i) sensors.emplace_back(sensor_kinds()[i], o.sensors[i], o.seed);
+  for (std::size_t i = 0; i < o.sensors.size(); ++i) sensors.emplace_back(sensor_kinds()[i], o.sensors[i], o.seed);
 
   TruthRecorder recorder;
   const auto steps = static_cast<long long>(std::llround(o.duration / o.step));

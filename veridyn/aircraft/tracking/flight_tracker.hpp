@@ -7,7 +7,7 @@
 
 #include "veridyn/aircraft/identification/signals/flight_signals.hpp"
 #include "veridyn/aircraft/tracking/coefficient_tracker.hpp"
-#include "veridyn/estimation/estimate.hpp"
+#include "veridyn/estimation/result/estimate.hpp"
 
 namespace veridyn::aircraft {
 

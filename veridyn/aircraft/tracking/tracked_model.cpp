@@ -8,7 +8,7 @@
 
 #include "veridyn/aircraft/tracking/tracking_judgement.hpp"
 #include "veridyn/core/constants.hpp"
-#include "veridyn/estimation/analysis.hpp"
+#include "veridyn/estimation/result/analysis.hpp"
 
 namespace veridyn::aircraft {
 namespace {

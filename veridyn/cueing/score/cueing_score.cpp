@@ -7,7 +7,6 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
-#include "veridyn/cueing/score/false_cues.hpp"
 
 namespace veridyn::cueing {
 namespace {

@@ -102,7 +102,6 @@ OptimalChannel::OptimalChannel(const Options& o) : turns_(o.turns), shifts_(o.sh
   by_rate_.setZero(n);
   if (m == 0) return;
   const numerics::LinearQuadratic lq = numerics::linear_quadratic(A, B, Q, R);
-  residual_ = lq.residual;
   for (Eigen::Index k = 0; k < m; ++k) {
     const Eigen::Index input = inputs[k];
     K_.row(input) = lq.K.row(k).head(n);

@@ -53,8 +53,6 @@ class OptimalChannel {
   /// @param input force [m/s^2] and rate [rad/s] that are to be felt
   PairedOutput step(const Input& input, SampleStep step);
 
-  /// Of the Riccati equation: see `numerics::LinearQuadratic::residual`.
-  [[nodiscard]] double riccati_residual() const { return residual_; }
   /// The platform's inputs over the vehicle's at a frequency where no limit is reached: columns force, rate.
   [[nodiscard]] Eigen::Matrix2cd response(double omega) const;
 
@@ -68,7 +66,6 @@ class OptimalChannel {
   Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::ColMajor, kMostStates, 2> of_platform_, of_vehicle_;
   Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::ColMajor, 2, kMostStates> K_;
   Eigen::Matrix2d K_vehicle_;
-  double residual_ = 0.0;
   // The system is linear: what the vehicle's force brings and what its rate brings are followed separately, so that the
   // rate of the tilt alone can be limited.
   State by_force_, by_rate_;

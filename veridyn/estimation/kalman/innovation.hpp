@@ -82,8 +82,6 @@ class InnovationMonitor {
 
   [[nodiscard]] InnovationSummary summary() const;
   [[nodiscard]] double log_likelihood() const noexcept { return log_likelihood_; }
-  /// Whether the last sample was refused.
-  [[nodiscard]] bool rejecting() const noexcept { return run_ > 0; }
 
  private:
   void count_in(double nu, double S) noexcept;

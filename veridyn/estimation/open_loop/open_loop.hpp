@@ -6,8 +6,8 @@
 
 #include "veridyn/core/recording.hpp"
 #include "veridyn/core/study.hpp"
-#include "veridyn/estimation/estimate.hpp"
 #include "veridyn/estimation/output_error/output_error.hpp"
+#include "veridyn/estimation/result/estimate.hpp"
 #include "veridyn/numerics/statistics.hpp"
 #include "veridyn/numerics/theil_shares.hpp"
 

@@ -8,7 +8,7 @@
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
-#include "veridyn/numerics/parallel.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::estimation {
 namespace {
@@ -195,7 +195,7 @@ class MarginalLikelihood {
 
 CorrelatedNoiseModel::CorrelatedNoiseModel(const ParametricModel& model, const std::vector<RowMatrix>& measured,
                                            Eigen::VectorXd correlation)
-    : model_(&model) {
+    : ModelView(model) {
   VERIDYN_ASSERT(measured.size() == model.segments());
   VERIDYN_ASSERT((correlation.array() >= 0.0).all() && (correlation.array() < 1.0).all());
   for (const RowMatrix& z : measured) {
@@ -219,7 +219,7 @@ CorrelatedNoiseModel::CorrelatedNoiseModel(const ParametricModel& model, const s
 
 bool CorrelatedNoiseModel::respond(std::size_t segment, const Eigen::VectorXd& theta, std::span<const Index> active,
                                    ModelResponse& response) const {
-  if (!model_->respond(segment, theta, active, response)) return false;
+  if (!viewed().respond(segment, theta, active, response)) return false;
   response.output = whitened(segment, response.output);
   if (active.empty()) return true;
   const RowMatrix& kept = kept_[segment];

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "veridyn/estimation/output_error/model_view.hpp"
 #include "veridyn/estimation/output_error/output_error.hpp"
-#include "veridyn/estimation/output_error/parametric_model.hpp"
 
 namespace veridyn::estimation {
 
@@ -16,21 +16,13 @@ namespace veridyn::estimation {
 ///     v_k = (y_k - phi^m y_k-m) / sqrt(1 - phi^2m), k - m the last sample before k that was measured
 ///
 /// The first measured sample of a segment stays as it is. Units and standard deviations are those of the outputs.
-class CorrelatedNoiseModel final : public ParametricModel {
+class CorrelatedNoiseModel final : public ModelView {
  public:
   /// `measured`: by segment, samples x outputs, NaN where nothing was measured. `correlation`: phi of each output, from
   /// 0 to below 1.
   CorrelatedNoiseModel(const ParametricModel& model, const std::vector<RowMatrix>& measured,
                        Eigen::VectorXd correlation);
 
-  [[nodiscard]] std::span<const ModelParameter> parameters() const override { return model_->parameters(); }
-  [[nodiscard]] std::span<const ModelOutput> outputs() const override { return model_->outputs(); }
-  [[nodiscard]] std::size_t segments() const override { return model_->segments(); }
-  [[nodiscard]] Eigen::Index samples(std::size_t segment) const override { return model_->samples(segment); }
-  [[nodiscard]] std::span<const ModelParameter> initial_conditions(std::size_t segment) const override {
-    return model_->initial_conditions(segment);
-  }
-  [[nodiscard]] std::string segment_name(std::size_t segment) const override { return model_->segment_name(segment); }
   [[nodiscard]] bool respond(std::size_t segment, const Eigen::VectorXd& theta, std::span<const Eigen::Index> active,
                              ModelResponse& response) const override;
 
@@ -42,7 +34,6 @@ class CorrelatedNoiseModel final : public ParametricModel {
   [[nodiscard]] RowMatrix restored(std::size_t segment, const RowMatrix& values) const;
 
  private:
-  const ParametricModel* model_;
   std::vector<RowMatrix> kept_;          ///< by segment, samples x outputs: phi^m; 0 where v = y
   std::vector<Eigen::MatrixXi> before_;  ///< k - m
 };

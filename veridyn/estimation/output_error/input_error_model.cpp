@@ -61,20 +61,16 @@ void ErrorWhitening::apply(Eigen::Ref<RowMatrix> columns) const {
 }
 
 InputErrorModel::InputErrorModel(const ParametricModel& model, std::vector<ErrorWhitening> whitening)
-    : model_(&model), whitening_(std::move(whitening)) {
+    : ModelView(model), whitening_(std::move(whitening)) {
   VERIDYN_ASSERT(whitening_.size() == model.segments());
   for (const ModelOutput& output : model.outputs()) outputs_.push_back({output.name, "1"});
 }
 
-InputErrorModel InputErrorModel::on(const ParametricModel& model) const {
-  InputErrorModel other = *this;
-  other.model_ = &model;
-  return other;
-}
+InputErrorModel InputErrorModel::on(const ParametricModel& model) const { return InputErrorModel(model, whitening_); }
 
 bool InputErrorModel::respond(std::size_t segment, const Eigen::VectorXd& theta, std::span<const Index> active,
                               ModelResponse& response) const {
-  if (!model_->respond(segment, theta, active, response)) return false;
+  if (!viewed().respond(segment, theta, active, response)) return false;
   Eigen::Map<RowMatrix> column(response.output.data(), response.output.size(), 1);
   whitening_[segment].apply(column);
   if (!active.empty()) whitening_[segment].apply(response.sensitivity);

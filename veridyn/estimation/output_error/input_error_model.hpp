@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "veridyn/estimation/output_error/parametric_model.hpp"
+#include "veridyn/estimation/output_error/model_view.hpp"
 
 namespace veridyn::estimation {
 
@@ -35,19 +35,12 @@ class ErrorWhitening {
 /// View of a model, which must outlive it, in units in which the residuals of a recording are independent of each other
 /// with standard deviation 1: generalised least squares for estimators that know only white noise. R is that of the
 /// parameters at which H was computed.
-class InputErrorModel final : public ParametricModel {
+class InputErrorModel final : public ModelView {
  public:
   /// One whitening a segment.
   InputErrorModel(const ParametricModel& model, std::vector<ErrorWhitening> whitening);
 
-  [[nodiscard]] std::span<const ModelParameter> parameters() const override { return model_->parameters(); }
   [[nodiscard]] std::span<const ModelOutput> outputs() const override { return outputs_; }
-  [[nodiscard]] std::size_t segments() const override { return model_->segments(); }
-  [[nodiscard]] Eigen::Index samples(std::size_t segment) const override { return model_->samples(segment); }
-  [[nodiscard]] std::span<const ModelParameter> initial_conditions(std::size_t segment) const override {
-    return model_->initial_conditions(segment);
-  }
-  [[nodiscard]] std::string segment_name(std::size_t segment) const override { return model_->segment_name(segment); }
   [[nodiscard]] bool respond(std::size_t segment, const Eigen::VectorXd& theta, std::span<const Eigen::Index> active,
                              ModelResponse& response) const override;
 
@@ -58,7 +51,6 @@ class InputErrorModel final : public ParametricModel {
   [[nodiscard]] RowMatrix whitened(std::size_t segment, const RowMatrix& measured) const;
 
  private:
-  const ParametricModel* model_;
   std::vector<ErrorWhitening> whitening_;
   std::vector<ModelOutput> outputs_;
 };

@@ -19,7 +19,7 @@ std::vector<double> kept_values(const ModelResponse& response) {
 }  // namespace
 
 LoggedModel::LoggedModel(const ParametricModel& model, std::string name, Misfit misfit, numerics::ValueLog* log)
-    : model_(&model), name_(std::move(name)), misfit_(std::move(misfit)), log_(log) {}
+    : ModelView(model), name_(std::move(name)), misfit_(std::move(misfit)), log_(log) {}
 
 std::uint64_t LoggedModel::key_of(std::size_t segment, const Eigen::VectorXd& theta,
                                   std::span<const Eigen::Index> active) const {
@@ -42,7 +42,7 @@ bool LoggedModel::respond(std::size_t segment, const Eigen::VectorXd& theta, std
   double seconds = 0.0;
   const auto compute = [&] {
     computed = true;
-    finished = model_->respond(segment, theta, active, response);
+    finished = viewed().respond(segment, theta, active, response);
     seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     return finished ? kept_values(response) : std::vector<double>();
   };

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "veridyn/estimation/output_error/parametric_model.hpp"
+#include "veridyn/estimation/output_error/model_view.hpp"
 #include "veridyn/numerics/batches/value_log.hpp"
 
 namespace veridyn::estimation {
@@ -24,7 +24,7 @@ struct ModelEvaluation {
 /// View of a model that notes what is asked of it, and answers from a log what an earlier run was answered: an
 /// estimation that was cut off takes the same path with the same bits, only faster, until it comes to where it was.
 /// Works with every estimator, for all of them take the next step from responses alone.
-class LoggedModel final : public ParametricModel {
+class LoggedModel final : public ModelView {
  public:
   /// How far a segment's outputs are from what was measured, for `evaluations`.
   using Misfit = std::function<double(std::size_t segment, const RowMatrix& output)>;
@@ -34,14 +34,6 @@ class LoggedModel final : public ParametricModel {
   /// @param log  nullptr: nothing is kept
   LoggedModel(const ParametricModel& model, std::string name, Misfit misfit, numerics::ValueLog* log);
 
-  [[nodiscard]] std::span<const ModelParameter> parameters() const override { return model_->parameters(); }
-  [[nodiscard]] std::span<const ModelOutput> outputs() const override { return model_->outputs(); }
-  [[nodiscard]] std::size_t segments() const override { return model_->segments(); }
-  [[nodiscard]] Eigen::Index samples(std::size_t segment) const override { return model_->samples(segment); }
-  [[nodiscard]] std::span<const ModelParameter> initial_conditions(std::size_t segment) const override {
-    return model_->initial_conditions(segment);
-  }
-  [[nodiscard]] std::string segment_name(std::size_t segment) const override { return model_->segment_name(segment); }
   [[nodiscard]] bool respond(std::size_t segment, const Eigen::VectorXd& theta, std::span<const Eigen::Index> active,
                              ModelResponse& response) const override;
 
@@ -56,7 +48,6 @@ class LoggedModel final : public ParametricModel {
   void note(std::size_t segment, const Eigen::VectorXd& theta, bool derivatives, bool finished, double seconds,
             const ModelResponse& response) const;
 
-  const ParametricModel* model_;
   std::string name_;
   Misfit misfit_;
   numerics::ValueLog* log_;

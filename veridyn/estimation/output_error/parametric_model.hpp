@@ -9,7 +9,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/regression/regression_data.hpp"
-#include "veridyn/numerics/parallel.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::estimation {
 

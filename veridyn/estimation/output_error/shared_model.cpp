@@ -27,7 +27,7 @@ numerics::SharedWork::Compute SharedModel::responses_of(const ParametricModel& m
 
 bool SharedModel::respond(std::size_t segment, const Eigen::VectorXd& theta, std::span<const Eigen::Index> active,
                           ModelResponse& response) const {
-  if (work_->alone()) return model_->respond(segment, theta, active, response);
+  if (work_->alone()) return viewed().respond(segment, theta, active, response);
   std::vector<double> request = {static_cast<double>(segment), static_cast<double>(active.size())}, reply;
   for (const Eigen::Index i : active) request.push_back(static_cast<double>(i));
   request.insert(request.end(), theta.begin(), theta.end());

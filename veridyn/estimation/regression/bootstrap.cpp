@@ -14,9 +14,9 @@
 #include "veridyn/estimation/regression/long_run_covariance.hpp"
 #include "veridyn/estimation/regression/ordinary_least_squares.hpp"
 #include "veridyn/estimation/regression/total_least_squares.hpp"
-#include "veridyn/numerics/parallel.hpp"
 #include "veridyn/numerics/random.hpp"
 #include "veridyn/numerics/statistics.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::estimation {
 namespace {

@@ -168,17 +168,6 @@ Eigen::VectorXcd finite_fourier_transform(std::span<const double> x, double step
   return result;
 }
 
-Eigen::VectorXcd derivative_transform(std::span<const double> x, double step, std::span<const double> frequencies_Hz) {
-  Eigen::VectorXcd result = finite_fourier_transform(x, step, frequencies_Hz);
-  const double T = step * static_cast<double>(x.size() - 1);
-  for (std::size_t i = 0; i < frequencies_Hz.size(); ++i) {
-    const double omega = 2.0 * kPi * frequencies_Hz[i];
-    Complex& value = result(i);
-    value = Complex(0.0, omega) * value + x.back() * std::polar(1.0, -omega * T) - x.front();
-  }
-  return result;
-}
-
 void FrequencyOptions::validate(double step) const {
   if (!(step > 0.0)) throw InputError("frequency_domain.step", fmt::format("is {} s; must be > 0", step));
   if (!(low_Hz > 0.0)) throw InputError("frequency_domain.low", fmt::format("is {} Hz; must be > 0", low_Hz));

@@ -15,11 +15,6 @@ namespace veridyn::estimation {
 [[nodiscard]] Eigen::VectorXcd finite_fourier_transform(std::span<const double> x, double step,
                                                         std::span<const double> frequencies_Hz);
 
-/// Transform of dx/dt without differentiating: x(T) exp(-j 2 pi f T) - x(0) + j 2 pi f X(f). In the frequency domain a
-/// derivative costs no noise; the ends must not be forgotten.
-[[nodiscard]] Eigen::VectorXcd derivative_transform(std::span<const double> x, double step,
-                                                    std::span<const double> frequencies_Hz);
-
 /// The band of a regression in the frequency domain.
 struct FrequencyOptions {
   double low_Hz = 0.1;         ///< below lie biases, drifts and trim

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "veridyn/estimation/judgement/evidence.hpp"
-#include "veridyn/estimation/parameter.hpp"
 #include "veridyn/estimation/regression/regression_data.hpp"
+#include "veridyn/estimation/result/parameter.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::estimation {

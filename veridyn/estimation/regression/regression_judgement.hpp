@@ -2,10 +2,10 @@
 
 #include <optional>
 
-#include "veridyn/estimation/analysis.hpp"
 #include "veridyn/estimation/regression/bootstrap.hpp"
 #include "veridyn/estimation/regression/regression.hpp"
 #include "veridyn/estimation/regression/structure_search.hpp"
+#include "veridyn/estimation/result/analysis.hpp"
 
 namespace veridyn::estimation {
 

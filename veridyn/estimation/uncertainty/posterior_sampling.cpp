@@ -11,8 +11,8 @@
 #include "veridyn/core/index.hpp"
 #include "veridyn/numerics/batches/fingerprint.hpp"
 #include "veridyn/numerics/linear_algebra/cholesky.hpp"
-#include "veridyn/numerics/parallel.hpp"
 #include "veridyn/numerics/statistics.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::estimation {
 namespace {

@@ -9,8 +9,9 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/core/quiet_progress.hpp"
-#include "veridyn/numerics/parallel.hpp"
+#include "veridyn/estimation/output_error/model_view.hpp"
 #include "veridyn/numerics/statistics.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::estimation {
 namespace {
@@ -22,29 +23,20 @@ constexpr double kLower = 0.05;
 constexpr int kRestarts = 3;
 
 /// View of a model with one parameter fixed, and its segments' unknowns starting where an estimate left them.
-class WithOneFixed final : public ParametricModel {
+class WithOneFixed final : public ModelView {
  public:
   /// @param parameter none: all free, only the starts are those of the estimate
   WithOneFixed(const ParametricModel& model, std::optional<std::size_t> parameter, double value,
                const std::vector<std::vector<ModelParameter>>& initial)
-      : model_(model), parameters_(model.parameters().begin(), model.parameters().end()), initial_(initial) {
+      : ModelView(model), parameters_(model.parameters().begin(), model.parameters().end()), initial_(initial) {
     if (!parameter) return;
     parameters_[*parameter].fixed = true;
     parameters_[*parameter].start = value;
   }
   [[nodiscard]] std::span<const ModelParameter> parameters() const override { return parameters_; }
-  [[nodiscard]] std::span<const ModelOutput> outputs() const override { return model_.outputs(); }
-  [[nodiscard]] std::size_t segments() const override { return model_.segments(); }
-  [[nodiscard]] Eigen::Index samples(std::size_t s) const override { return model_.samples(s); }
   [[nodiscard]] std::span<const ModelParameter> initial_conditions(std::size_t s) const override { return initial_[s]; }
-  [[nodiscard]] std::string segment_name(std::size_t s) const override { return model_.segment_name(s); }
-  [[nodiscard]] bool respond(std::size_t s, const Eigen::VectorXd& theta, std::span<const Eigen::Index> active,
-                             ModelResponse& response) const override {
-    return model_.respond(s, theta, active, response);
-  }
 
  private:
-  const ParametricModel& model_;
   std::vector<ModelParameter> parameters_;
   const std::vector<std::vector<ModelParameter>>& initial_;
 };

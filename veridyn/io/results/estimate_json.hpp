@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "veridyn/estimation/estimate.hpp"
+#include "veridyn/estimation/result/estimate.hpp"
 
 namespace veridyn::io {
 

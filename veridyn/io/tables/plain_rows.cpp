@@ -5,7 +5,7 @@
 #include <cmath>
 #include <thread>
 
-#include "veridyn/numerics/parallel.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::io::internal {
 namespace {

@@ -14,7 +14,6 @@
 #include "veridyn/io/log/time_stamps.hpp"
 #include "veridyn/io/ulog/px4_units.hpp"
 #include "veridyn/io/ulog/ulog_format.hpp"
-#include "veridyn/io/ulog/ulog_key.hpp"
 #include "veridyn/io/ulog/ulog_story.hpp"
 
 namespace veridyn::io {

@@ -48,11 +48,8 @@ class CarLink {
   [[nodiscard]] const OperatorEnd& end() const { return end_; }
   /// Reports that held a motion, and those without one.
   [[nodiscard]] const PerPacketFate<std::uint64_t>& counts() const { return counts_; }
-  /// What the last command asked for.
-  [[nodiscard]] const CarCommand& last_command() const { return last_; }
   /// The oldest event of wheel and pedals that no command held before the last one did; asked once.
   [[nodiscard]] std::optional<Nanoseconds> take_pedal();
-  [[nodiscard]] bool has_driver() const { return input_.has_value(); }
 
  private:
   [[nodiscard]] std::optional<Telemetry> motion_of(const ReceivedReport& report);
@@ -72,7 +69,7 @@ class CarLink {
   std::optional<DriverInput> input_;
   std::optional<Nanoseconds> pedal_, sent_pedal_;
   bool held_ = true;  ///< until the throttle has been released
-  CarCommand last_;
+  CarCommand last_;   ///< what the last command asked for
 };
 
 }  // namespace veridyn::live

@@ -225,10 +225,7 @@ void PacketIntake::count(const Sender& sender, PacketFate fate) {
       return;
     }
   }
-  if (known_senders_ == kSenders) {
-    ++from_others_;
-    return;
-  }
+  if (known_senders_ == kSenders) return;
   senders_[known_senders_] = {sender, {}};
   ++senders_[known_senders_++].counts[fate];
 }

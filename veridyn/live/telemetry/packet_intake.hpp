@@ -76,10 +76,9 @@ class PacketIntake {
     Sender sender;
     PerPacketFate<std::uint64_t> counts = {};
   };
-  /// The first ones; `others` counts what came from those beyond.
+  /// The first ones; those beyond are not counted separately.
   static constexpr std::size_t kSenders = 8;
   [[nodiscard]] std::vector<FromSender> senders() const;
-  [[nodiscard]] std::uint64_t from_others() const { return from_others_; }
   /// What is derived and how late that is, in words; empty where nothing is or it is not known yet.
   [[nodiscard]] std::string_view derived() const;
 
@@ -112,7 +111,7 @@ class PacketIntake {
   std::optional<io::PacketMotion> stray_;  ///< the last one that did not follow
   std::size_t strays_ = 0;                 ///< in a row, each following the one before
   bool restarted_ = false, derives_acceleration_ = false, derives_rate_ = false;
-  std::uint64_t drives_ = 0, from_others_ = 0;
+  std::uint64_t drives_ = 0;
   std::array<FromSender, kSenders> senders_{};
   std::size_t known_senders_ = 0;
   PacketFate last_fate_ = PacketFate::kWrongSize;

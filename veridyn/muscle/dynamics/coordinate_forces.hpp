@@ -20,15 +20,6 @@ template <typename Scalar>
   return x * x * x * (x * (x * 6.0 - 15.0) + 10.0);
 }
 
-/// Integral of x smooth_step(x) from 0 to x.
-template <typename Scalar>
-[[nodiscard]] Scalar smooth_step_moment(const Scalar& x) {
-  if (!(x > 0.0)) return x * 0.0;
-  if (x >= 1.0) return 0.5 * x * x - 1.0 / 7.0;
-  const Scalar x2 = x * x;
-  return x2 * x2 * x * (x * (x * (6.0 / 7.0) - 2.5) + 2.0);
-}
-
 }  // namespace internal
 
 /// Force of a coordinate limit [N m or N] at value q and speed qdot, as OpenSim 4.5 has it (CoordinateLimitForce):
@@ -44,16 +35,6 @@ template <typename Scalar>
   const Scalar up = internal::smooth_step(Scalar(above / limit.transition));
   const Scalar low = internal::smooth_step(Scalar(below / limit.transition));
   return limit.lower_stiffness * low * below - limit.upper_stiffness * up * above - limit.damping * (up + low) * qdot;
-}
-
-/// Energy stored in the limit's springs [J]: minus its derivative is the force at rest.
-template <typename Scalar>
-[[nodiscard]] Scalar limit_energy(const CoordinateLimitForce& limit, const Scalar& q) {
-  const double unit = limit.transition * limit.transition;
-  return limit.upper_stiffness * unit *
-             internal::smooth_step_moment(Scalar((q - limit.upper_limit) / limit.transition)) +
-         limit.lower_stiffness * unit *
-             internal::smooth_step_moment(Scalar((limit.lower_limit - q) / limit.transition));
 }
 
 /// Adds the forces of the limits to tau (by coordinate).

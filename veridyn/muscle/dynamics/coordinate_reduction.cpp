@@ -11,7 +11,7 @@ namespace veridyn::muscle {
 CoordinateReduction::CoordinateReduction(const Model& model, std::span<const int> prescribed)
     : roles_(model.coordinates.size(), CoordinateRole::kFree),
       free_root_(model.coordinates.size(), -1),
-      driven_root_(model.coordinates.size(), -1) {
+      follows_driven_(model.coordinates.size(), 0) {
   const auto place = [&model](int c) { return fmt::format("coordinate '{}'", model.coordinates[c].name); };
   for (std::size_t c = 0; c < roles_.size(); ++c) {
     if (model.coordinates[c].locked) roles_[c] = CoordinateRole::kDriven;
@@ -38,7 +38,7 @@ CoordinateReduction::CoordinateReduction(const Model& model, std::span<const int
       free_root_[c] = static_cast<int>(free_.size());
       free_.push_back(static_cast<int>(c));
     } else if (roles_[c] == CoordinateRole::kDriven) {
-      driven_root_[c] = static_cast<int>(driven_.size());
+      follows_driven_[c] = 1;
       driven_.push_back(static_cast<int>(c));
       defaults_.push_back(model.coordinates[c].default_value);
     }
@@ -54,7 +54,7 @@ CoordinateReduction::CoordinateReduction(const Model& model, std::span<const int
       known[to] = true;
       --left;
       free_root_[to] = free_root_[from];
-      driven_root_[to] = driven_root_[from];
+      follows_driven_[to] = follows_driven_[from];
       if (free_root_[to] >= 0) free_are_uncoupled_ = false;
       couplers_.push_back({coupler.independent, coupler.dependent, coupler.function});
     }
@@ -66,7 +66,6 @@ CoordinateReduction::CoordinateReduction(const Model& model, std::span<const int
     throw InputError(place(static_cast<int>(c)),
                      fmt::format("coupler '{}' makes it depend on itself", setter[c]->name));
   }
-  for (const int root : driven_root_) follows_driven_.push_back(root >= 0 ? 1 : 0);
 }
 
 std::vector<DrivenMotion<double>> CoordinateReduction::default_motion() const {

@@ -41,8 +41,6 @@ class CoordinateReduction {
   [[nodiscard]] std::span<const int> driven() const { return driven_; }
   /// Index in `free()` of the coordinate that this one follows; -1 when that is a driven one.
   [[nodiscard]] int free_root(int coordinate) const { return free_root_[coordinate]; }
-  /// The same in `driven()`.
-  [[nodiscard]] int driven_root(int coordinate) const { return driven_root_[coordinate]; }
   /// What a generalised force on coordinate c adds to that on `coordinate`: 1 for itself, the slope (by coordinate, of
   /// `ExpandedState`) of those that follow it when it is free, else 0.
   [[nodiscard]] double share_in(int c, int coordinate, const double* slope) const {
@@ -70,7 +68,7 @@ class CoordinateReduction {
 
  private:
   std::vector<CoordinateRole> roles_;
-  std::vector<int> free_, driven_, free_root_, driven_root_;
+  std::vector<int> free_, driven_, free_root_;
   std::vector<Coupler> couplers_;
   std::vector<double> defaults_;  ///< of driven coordinates
   std::vector<char> follows_driven_;

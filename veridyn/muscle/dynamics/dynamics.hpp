@@ -41,9 +41,6 @@ class Dynamics {
   /// forces with their moments about the ground's origin; nullptr: none. `qddot` nullptr: zero.
   void inverse_dynamics(const Scalar* qddot, const SpatialVector<Scalar>* applied, Scalar* tau);
 
-  /// Generalised forces of the forces `applied` (by link, as above): sum over links of column . applied.
-  void generalized_forces(const SpatialVector<Scalar>* applied, Scalar* tau);
-
   /// Rows of the mass matrix by the composite rigid body algorithm, in the layout of Mechanism::row.
   void update_mass_rows();
   /// M(a, b) for a coordinate b on the chain of a, after `update_mass_rows`.
@@ -179,17 +176,6 @@ void Dynamics<Scalar>::inverse_dynamics(const Scalar* qddot, const SpatialVector
       F.linear -= applied[i].linear;
     }
   }
-  for (std::size_t i = links - 1; i >= 1; --i) {
-    const Link& link = mechanism_->link(static_cast<int>(i));
-    for (const int c : link.coordinates) tau[c] = kinematics_.columns[c].dot(force_[i]);
-    if (link.parent > 0) force_[link.parent] += force_[i];
-  }
-}
-
-template <typename Scalar>
-void Dynamics<Scalar>::generalized_forces(const SpatialVector<Scalar>* applied, Scalar* tau) {
-  const std::size_t links = center_.size();
-  for (std::size_t i = 1; i < links; ++i) force_[i] = applied[i];
   for (std::size_t i = links - 1; i >= 1; --i) {
     const Link& link = mechanism_->link(static_cast<int>(i));
     for (const int c : link.coordinates) tau[c] = kinematics_.columns[c].dot(force_[i]);

@@ -34,9 +34,7 @@ class LoopSolver {
   void solve(const Scalar* Y, const Scalar* wanted);
   [[nodiscard]] const Scalar& multiplier(int r) const { return multiplier_[r]; }
 
-  /// Adds the constraints' forces, by link.
-  void add_forces(SpatialVector<Scalar>* by_link) const;
-  /// Adds their generalised forces, by coordinate.
+  /// Adds the constraints' generalised forces, by coordinate.
   void add_generalized_forces(const Kinematics<Scalar>& kinematics, Scalar* tau) const;
 
   /// Below it, relative to what it was summed from, a number is rounding.
@@ -143,15 +141,6 @@ void LoopSolver<Scalar>::solve(const Scalar* Y, const Scalar* wanted) {
     const auto p = at(order_[k]);
     for (std::size_t l = k + 1; l < rank; ++l) multiplier_[p] -= matrix_[p * m + order_[l]] * multiplier_[order_[l]];
     multiplier_[p] /= matrix_[p * m + p];
-  }
-}
-
-template <typename Scalar>
-void LoopSolver<Scalar>::add_forces(SpatialVector<Scalar>* by_link) const {
-  for (int r = 0; r < rows(); ++r) {
-    const LoopConstraints::Constraint& constraint = loops_->of_row(r);
-    by_link[constraint.link_2].add_scaled(multiplier(r), row(r).force);
-    by_link[constraint.link_1].add_scaled(-multiplier(r), row(r).force);
   }
 }
 

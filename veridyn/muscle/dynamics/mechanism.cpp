@@ -171,7 +171,6 @@ void check(const Model& model, const std::vector<int>& joint_of_body) {
 
 Mechanism::Mechanism(const Model& model)
     : coordinate_link_(model.coordinates.size(), -1), chain_length_(model.coordinates.size()), gravity_(model.gravity) {
-  for (const Coordinate& c : model.coordinates) coordinate_names_.push_back(c.name);
   const std::size_t bodies = model.bodies.size();
   if (bodies == 0) throw InputError(fmt::format("model '{}'", model.name), "it has no ground body");
   std::vector<int> joint_of_body(bodies, -1);

@@ -93,7 +93,6 @@ class Mechanism {
   /// Where the row of this coordinate begins when rows as long as their chains are stored one after another; the total
   /// for `coordinates()`.
   [[nodiscard]] std::size_t row(int coordinate) const { return row_[coordinate]; }
-  [[nodiscard]] const std::string& coordinate_name(int coordinate) const { return coordinate_names_[coordinate]; }
   [[nodiscard]] const Eigen::Vector3d& gravity() const { return gravity_; }
   /// All coordinates, ground's side first.
   [[nodiscard]] std::span<const int> topological_coordinates() const { return topological_; }
@@ -102,7 +101,6 @@ class Mechanism {
   std::vector<Link> links_;
   std::vector<BodyPlace> bodies_;
   std::vector<int> coordinate_link_;
-  std::vector<std::string> coordinate_names_;
   std::vector<int> topological_;
   std::vector<std::size_t> chain_length_;
   std::vector<std::size_t> row_;

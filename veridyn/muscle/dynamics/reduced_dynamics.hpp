@@ -32,10 +32,6 @@ class ReducedDynamics {
   /// `Dynamics::inverse_dynamics`). All coordinates' accelerations are in `qddot()` afterwards.
   Factorization forward_dynamics(const Scalar* tau, const SpatialVector<Scalar>* applied, Scalar* zddot);
 
-  /// After `forward_dynamics` with the same arguments: the forces that drive the driven coordinates, with those
-  /// of coordinates that couplers make follow them. [N m or N], in the order of `driven()`.
-  void driving_forces(const Scalar* tau, const SpatialVector<Scalar>* applied, Scalar* forces);
-
   /// Null without loops. After `forward_dynamics` it holds their multipliers.
   [[nodiscard]] const LoopSolver<Scalar>* loops() const { return loops_ ? &*loops_ : nullptr; }
   /// The loops' errors and rows at the state set, for assembly.
@@ -219,22 +215,6 @@ void ReducedDynamics<Scalar>::meet_loops(Scalar* zddot) {
   for (int r = 0; r < loops.rows(); ++r) {
     const Scalar* const Y = moved_.data() + at(r) * n;
     for (std::size_t i = 0; i < n; ++i) zddot[i] += loops.multiplier(r) * Y[i];
-  }
-}
-
-template <typename Scalar>
-void ReducedDynamics<Scalar>::driving_forces(const Scalar* tau, const SpatialVector<Scalar>* applied, Scalar* forces) {
-  dynamics_.inverse_dynamics(qddot_.data(), applied, residual_.data());
-  for (int c = 0; c < dynamics_.mechanism().coordinates(); ++c) residual_(c) -= tau[c];
-  if (loops_) {
-    residual_ = -residual_;
-    loops_->add_generalized_forces(dynamics_.kinematics(), residual_.data());
-    residual_ = -residual_;
-  }
-  for (std::size_t i = 0; i < reduction_->driven().size(); ++i) forces[i] = Scalar(0.0);
-  for (int c = 0; c < dynamics_.mechanism().coordinates(); ++c) {
-    const int i = reduction_->driven_root(c);
-    if (i >= 0) forces[i] += state_.slope(c) * residual_(c);
   }
 }
 

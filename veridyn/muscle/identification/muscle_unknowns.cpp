@@ -22,13 +22,13 @@ std::string full_name(const Model& model, const MuscleParameterName& name) {
   return fmt::format("{}.{}", model.muscles[name.muscle].name(), parameter_field(name.field).name);
 }
 
-std::size_t find_field(std::string_view field, std::string_view text, std::string_view place) {
+std::size_t find_field(std::string_view field, std::string_view place) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < MuscleParameterName::kCount; ++i) {
     names.emplace_back(parameter_field(i).name);
     if (names.back() == field) return i;
   }
-  throw InputError(place, fmt::format("'{}': a muscle has no parameter '{}'{}", text, field, suggestion(field, names)));
+  throw InputError(place, fmt::format("'{0}': a muscle has no parameter '{0}'{1}", field, suggestion(field, names)));
 }
 
 std::vector<int> find_muscles(const Model& model, const MuscleUnknownSpec& spec, std::string_view place) {
@@ -88,23 +88,13 @@ MusculotendonField parameter_field(std::size_t field) {
   return estimable_field(field);
 }
 
-MuscleParameterName parse_parameter_name(const Model& model, std::string_view text, std::string_view place) {
-  const std::size_t dot = text.rfind('.');
-  const std::string_view muscle = text.substr(0, dot);
-  const std::string_view field = dot == std::string_view::npos ? std::string_view() : text.substr(dot + 1);
-  const int index = model.muscle(muscle);
-  if (index < 0) throw InputError(place, fmt::format("'{}': {}", text, model.no_muscle(muscle)));
-  return {index, find_field(field, text, place)};
-}
-
 MuscleUnknown make_unknown(const Model& model, const MuscleUnknownSpec& spec, std::string_view place) {
   MuscleUnknown unknown;
   unknown.factor = spec.factor;
   unknown.fixed = spec.fixed;
   if (spec.fields.empty()) throw InputError(place, "names no parameter of a muscle");
   for (const int muscle : find_muscles(model, spec, place)) {
-    for (const std::string& field : spec.fields)
-      unknown.parameters.push_back({muscle, find_field(field, field, place)});
+    for (const std::string& field : spec.fields) unknown.parameters.push_back({muscle, find_field(field, place)});
   }
   const MuscleParameterName& first = unknown.parameters.front();
   const bool several = unknown.parameters.size() > 1;

@@ -27,9 +27,6 @@ struct MuscleParameterName {
 
 /// Name and unit of a field, those of the excitation included: "excitation_gain", "excitation_delay".
 [[nodiscard]] MusculotendonField parameter_field(std::size_t field);
-/// Reads "MUSCLE.field". @throws InputError at `place` naming the nearest muscle or field.
-[[nodiscard]] MuscleParameterName parse_parameter_name(const Model& model, std::string_view text,
-                                                       std::string_view place);
 
 /// Bound or width of an unknown as a study states it: in the unknown's unit, or in percent of its start.
 struct Extent {

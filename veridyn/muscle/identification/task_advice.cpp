@@ -13,7 +13,7 @@
 #include "veridyn/estimation/output_error/information.hpp"
 #include "veridyn/muscle/identification/task_segments.hpp"
 #include "veridyn/muscle/identification/task_warnings.hpp"
-#include "veridyn/numerics/parallel.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::muscle {
 namespace {

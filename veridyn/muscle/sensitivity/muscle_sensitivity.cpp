@@ -11,7 +11,7 @@
 #include "veridyn/muscle/simulation/wrap_bands.hpp"
 #include "veridyn/muscle/tasks/task_error.hpp"
 #include "veridyn/numerics/batches/block_store.hpp"
-#include "veridyn/numerics/parallel.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::muscle {
 namespace {

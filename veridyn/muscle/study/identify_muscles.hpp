@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "veridyn/core/progress.hpp"
-#include "veridyn/estimation/analysis.hpp"
 #include "veridyn/estimation/output_error/logged_model.hpp"
+#include "veridyn/estimation/result/analysis.hpp"
 #include "veridyn/estimation/uncertainty/posterior_sampling.hpp"
 #include "veridyn/estimation/uncertainty/profile_likelihood.hpp"
 #include "veridyn/muscle/identification/task_advice.hpp"

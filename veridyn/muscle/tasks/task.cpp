@@ -11,7 +11,7 @@
 #include "veridyn/core/quiet_progress.hpp"
 #include "veridyn/muscle/simulation/motion_analysis.hpp"
 #include "veridyn/muscle/simulation/system_evaluator.hpp"
-#include "veridyn/numerics/parallel.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::muscle {
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,7 +11,6 @@
 #include "veridyn/muscle/simulation/computed_muscle_control.hpp"
 #include "veridyn/muscle/simulation/forward_simulation.hpp"
 #include "veridyn/muscle/simulation/musculoskeletal_system.hpp"
-#include "veridyn/muscle/tasks/emg_recording.hpp"
 
 namespace veridyn::muscle {
 
@@ -25,6 +25,16 @@ struct MeasuredMotion {
   std::vector<double> time;      ///< [s]; at the first the simulation starts
   estimation::RowMatrix values;  ///< samples x outputs of the study; NaN: not measured [SI]
   std::string source;            ///< file
+};
+
+/// A motion recorded with EMG: angles, envelopes and what inverse dynamics found, each with its own times on one clock.
+struct EmgRecording {
+  Motion angles;
+  Eigen::VectorXd rest;             ///< values of the coordinates that `angles` does not have [rad or m]
+  std::vector<ControlSignals> emg;  ///< by signal: one envelope each, 0 to 1
+  double begin = 0.0;               ///< angles and EMG begin [s]
+  std::vector<double> time;         ///< of the values that are compared [s]
+  estimation::RowMatrix measured;   ///< samples x outputs of the study; NaN: not measured [SI]
 };
 
 /// A motion that a person performs for an estimate of the muscles: what is desired, what is held, what is carried.

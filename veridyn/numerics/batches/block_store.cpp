@@ -11,8 +11,8 @@
 #include "veridyn/core/files.hpp"
 #include "veridyn/numerics/batches/block_file.hpp"
 #include "veridyn/numerics/batches/fingerprint.hpp"
-#include "veridyn/numerics/parallel.hpp"
 #include "veridyn/numerics/ranks/shared_work.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::numerics {
 

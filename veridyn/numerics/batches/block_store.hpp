@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -9,7 +10,6 @@
 #include <vector>
 
 #include "veridyn/core/progress.hpp"
-#include "veridyn/numerics/batches/process_share.hpp"
 #include "veridyn/numerics/ranks/ranks.hpp"
 
 namespace veridyn::numerics {
@@ -26,6 +26,15 @@ struct Batch {
   std::size_t values_per_item = 1;
   /// Instead of `value`: fills all values of an item; on any thread.
   std::function<void(std::size_t, std::span<double>)> fill = {};
+};
+
+/// Which part of a work this process computes, of several that run whenever they like: items `index`, `index + count`,
+/// ... Nothing waits for the others.
+struct ProcessShare {
+  std::size_t index = 0;  ///< below `count`
+  std::size_t count = 1;  ///< 0: computes nothing, only reads what is there
+
+  [[nodiscard]] bool computes(std::size_t item) const { return count > 0 && item % count == index; }
 };
 
 /// What came out of a batch.

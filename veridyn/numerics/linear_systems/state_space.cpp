@@ -6,7 +6,6 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
-#include "veridyn/numerics/linear_algebra/general_eigen.hpp"
 #include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 #include "veridyn/numerics/linear_algebra/products.hpp"
 #include "veridyn/numerics/linear_algebra/real_form.hpp"
@@ -35,8 +34,6 @@ Eigen::MatrixXcd StateSpace::response(double omega) const { return response_at(*
 Eigen::MatrixXcd StateSpace::response(double omega, double step) const {
   return response_at(*this, std::polar(1.0, omega * step));
 }
-
-Eigen::VectorXcd StateSpace::poles() const { return general_eigenvalues(A); }
 
 void StateSpace::validate() const {
   const Eigen::Index n = A.rows();
@@ -85,16 +82,6 @@ StateSpace in_series(const StateSpace& first, const StateSpace& second) {
   s.B << first.B, product(second.B, first.D);
   s.C << product(second.D, first.C), second.C;
   return s;
-}
-
-StateSpace alongside(const StateSpace& a, const StateSpace& b) {
-  const auto diagonal = [](const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) {
-    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(x.rows() + y.rows(), x.cols() + y.cols());
-    all.topLeftCorner(x.rows(), x.cols()) = x;
-    all.bottomRightCorner(y.rows(), y.cols()) = y;
-    return all;
-  };
-  return {diagonal(a.A, b.A), diagonal(a.B, b.B), diagonal(a.C, b.C), diagonal(a.D, b.D)};
 }
 
 }  // namespace veridyn::numerics

@@ -18,8 +18,6 @@ struct StateSpace {
   [[nodiscard]] Eigen::MatrixXcd response(double omega) const;
   /// Of a discrete system at z = e^(j omega step). @param step [s]
   [[nodiscard]] Eigen::MatrixXcd response(double omega, double step) const;
-  /// Eigenvalues of A.
-  [[nodiscard]] Eigen::VectorXcd poles() const;
   /// @throws InputError where sizes do not fit or an entry is not finite.
   void validate() const;
 };
@@ -30,7 +28,5 @@ struct StateSpace {
 
 /// `second` takes the outputs of `first`.
 [[nodiscard]] StateSpace in_series(const StateSpace& first, const StateSpace& second);
-/// Side by side: inputs and outputs of `a`, then those of `b`.
-[[nodiscard]] StateSpace alongside(const StateSpace& a, const StateSpace& b);
 
 }  // namespace veridyn::numerics

@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "veridyn/estimation/analysis.hpp"
+#include "veridyn/estimation/result/analysis.hpp"
 #include "veridyn/report/document/document.hpp"
 
 /// What every identification reports in the same way, whatever the domain: parameters, methods, checks, prediction. A

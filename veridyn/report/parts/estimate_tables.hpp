@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "veridyn/estimation/estimate.hpp"
 #include "veridyn/estimation/recursive/change_detection.hpp"
 #include "veridyn/estimation/regression/regression.hpp"
+#include "veridyn/estimation/result/estimate.hpp"
 #include "veridyn/report/document/document.hpp"
 
 /// Estimates, checks, fits and changes as tables: the same rows for every domain.

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "veridyn/estimation/parameter.hpp"
+#include "veridyn/estimation/result/parameter.hpp"
 #include "veridyn/estimation/uncertainty/posterior_sampling.hpp"
 #include "veridyn/report/document/document.hpp"
 

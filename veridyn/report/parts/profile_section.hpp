@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "veridyn/estimation/parameter.hpp"
+#include "veridyn/estimation/result/parameter.hpp"
 #include "veridyn/estimation/uncertainty/profile_likelihood.hpp"
 #include "veridyn/report/document/document.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "veridyn/estimation/estimate.hpp"
+#include "veridyn/estimation/result/estimate.hpp"
 #include "veridyn/report/document/document.hpp"
 
 namespace veridyn::report {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "veridyn/core/progress.hpp"
-#include "veridyn/estimation/analysis.hpp"
-#include "veridyn/estimation/estimate.hpp"
 #include "veridyn/estimation/output_error/output_error.hpp"
+#include "veridyn/estimation/result/analysis.hpp"
+#include "veridyn/estimation/result/estimate.hpp"
 #include "veridyn/estimation/uncertainty/profile_likelihood.hpp"
 #include "veridyn/vehicle/identification/fit/axle_estimate.hpp"
 #include "veridyn/vehicle/identification/fit/vehicle_estimate.hpp"

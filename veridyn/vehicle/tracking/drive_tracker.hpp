@@ -8,8 +8,8 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/enum_array.hpp"
-#include "veridyn/estimation/estimate.hpp"
 #include "veridyn/estimation/recursive/regression_tracker.hpp"
+#include "veridyn/estimation/result/estimate.hpp"
 #include "veridyn/vehicle/identification/signals/drive_segments.hpp"
 #include "veridyn/vehicle/identification/signals/drive_signals.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"

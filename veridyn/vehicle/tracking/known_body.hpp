@@ -4,7 +4,7 @@
 #include <string>
 
 #include "veridyn/core/progress.hpp"
-#include "veridyn/estimation/estimate.hpp"
+#include "veridyn/estimation/result/estimate.hpp"
 #include "veridyn/vehicle/identification/vehicle_identification.hpp"
 #include "veridyn/vehicle/tracking/axle_curve.hpp"
 

@@ -40,6 +40,11 @@ struct LinearTyre {
   [[nodiscard]] LinearTyre scaled(double force, double length) const {
     return {stiffness * force, slip_stiffness * force, mu, pneumatic_trail * length};
   }
+
+  template <typename Other>
+  [[nodiscard]] LinearTyre<Other> cast() const {
+    return {Other(stiffness), Other(slip_stiffness), Other(mu), Other(pneumatic_trail)};
+  }
 };
 
 /// -t F_y [N m], whatever the slip.

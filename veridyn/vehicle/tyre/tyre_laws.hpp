@@ -70,4 +70,17 @@ using AllTyres = internal::TyresAfter<void VERIDYN_TYRE_LAWS(VERIDYN_NEXT_TYRE)>
 /// Those that numbers of a study describe.
 using AllTyresByNumbers = decltype(internal::by_numbers(TyreList<>(), AllTyres()));
 
+/// A law without its numbers: which of a list is meant.
+template <typename Tyre>
+struct TyreLaw {
+  [[nodiscard]] friend bool operator==(const TyreLaw&, const TyreLaw&) = default;
+};
+
+/// The law has a shape of its own, factor C and curvature E.
+template <typename Tyre>
+concept TyreWithShape = requires(Tyre tyre) {
+  tyre.C;
+  tyre.E;
+};
+
 }  // namespace veridyn::vehicle

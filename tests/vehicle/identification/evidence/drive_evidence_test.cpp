@@ -14,7 +14,7 @@
 #include "tests/vehicle/simulation/drives.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/judgement/judgement.hpp"
-#include "veridyn/numerics/parallel.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::vehicle {
 namespace {

@@ -139,7 +139,7 @@ TEST(VehicleJudgement, RegressionsThatBelongToNoBicycleReject) {
   EXPECT_EQ(judge_vehicle(problem, findings).verdict, estimation::GroupVerdict::kEffective);
   EXPECT_THAT(judge_vehicle(problem, findings).reason, HasSubstr("belong to no bicycle (p = 1.0e-06)"));
   // Equation error knows linear tyres only.
-  c.options.model.tyre = DriveTyre::kMagicFormula;
+  c.options.model.tyre = kDriveTyre<SimpleMagicFormulaTyre>;
   EXPECT_EQ(judge_vehicle(problem, findings).verdict, estimation::GroupVerdict::kIdentified);
 }
 
@@ -185,7 +185,7 @@ TEST(VehicleJudgement, FindsAModelThatIsSystematicallyOffOnTheHoldOut) {
 }
 
 /// Both methods with standard errors of 1 %, output error's C_f being `ratio` times equation error's.
-AgreementChecks agreement_where_c_f_differs(double ratio, DriveTyre tyre = DriveTyre::kLinear) {
+AgreementChecks agreement_where_c_f_differs(double ratio, DriveTyre tyre = kDriveTyre<LinearTyre>) {
   Case c;
   c.options.model.tyre = tyre;
   EquationErrorEstimates equation_error;
@@ -221,7 +221,7 @@ TEST(CheckAgreement, ComparesTheMethodsWithinTheirErrorBars) {
   EXPECT_EQ(other.methods->outcome, Outcome::kFailed) << other.methods->text;
   EXPECT_TRUE(other.methods->bears_on.contains(estimation::Purpose::kParameters));
   EXPECT_FALSE(other.methods->bears_on.contains(estimation::Purpose::kPrediction));
-  EXPECT_EQ(agreement_where_c_f_differs(1.2, DriveTyre::kMagicFormula).methods->outcome, Outcome::kCare);
+  EXPECT_EQ(agreement_where_c_f_differs(1.2, kDriveTyre<SimpleMagicFormulaTyre>).methods->outcome, Outcome::kCare);
 }
 
 TEST(VehicleJudgement, HasARowForEveryCheckOfASoundEstimate) {

@@ -74,7 +74,7 @@ void expect_derivatives(const DriveParametricModel& model, const Eigen::VectorXd
 
 TEST(DriveParametricModel, SensitivitiesAreThoseOfFiniteDifferences) {
   const DriveSignals signals = rolling_signals(testing::perfect_sensors());
-  for (const DriveTyre tyre : {DriveTyre::kLinear, DriveTyre::kMagicFormula}) {
+  for (const DriveTyre tyre : {kDriveTyre<LinearTyre>, kDriveTyre<SimpleMagicFormulaTyre>}) {
     for (const DriveStructure structure :
          {DriveStructure::kBicycle, DriveStructure::kRoll, DriveStructure::kRelaxation}) {
       DriveModelOptions options;
@@ -94,7 +94,7 @@ TEST(DriveParametricModel, SensitivitiesAreThoseOfFiniteDifferences) {
       std::vector<Eigen::Index> active(static_cast<std::size_t>(theta.size()));
       std::iota(active.begin(), active.end(), Eigen::Index{0});
       expect_derivatives(model, theta, active,
-                         std::string(to_string(structure)) + ", tyre " + std::to_string(static_cast<int>(tyre)));
+                         std::string(to_string(structure)) + ", tyre " + std::to_string(tyre.index()));
     }
   }
 }

@@ -82,15 +82,15 @@ TEST(EstimatedDriveModel, KnowsTheStructureByItsUnknowns) {
     return estimated_drive_model(estimate_of(more), car_of_2700_mm(), {}).options;
   };
   EXPECT_EQ(with({}).structure, DriveStructure::kBicycle);
-  EXPECT_EQ(with({}).tyre, DriveTyre::kLinear);
+  EXPECT_EQ(with({}).tyre, kDriveTyre<LinearTyre>);
   EXPECT_EQ(with({{"roll_gradient", 0.009}}).structure, DriveStructure::kRoll);
   EXPECT_EQ(with({{"roll_gradient", 0.009}, {"relaxation_length", 0.4}}).structure, DriveStructure::kRelaxation);
   const DriveModelOptions fiala = with({{"roll_gradient", 0.009}, {"relaxation_length", 0.4}, {"mu", 0.9}});
   EXPECT_EQ(fiala.structure, DriveStructure::kSaturation);
-  EXPECT_EQ(fiala.tyre, DriveTyre::kFiala);
+  EXPECT_EQ(fiala.tyre, kDriveTyre<FialaTyre>);
   const DriveModelOptions formula = with({{"roll_gradient", 0.009}, {"mu", 0.9}, {"C", 1.4}});
   EXPECT_EQ(formula.structure, DriveStructure::kMagicFormula);
-  EXPECT_EQ(formula.tyre, DriveTyre::kMagicFormula);
+  EXPECT_EQ(formula.tyre, kDriveTyre<SimpleMagicFormulaTyre>);
   EXPECT_EQ(formula.start[DriveUnknown::kRelaxationLength], 0.0) << "slips of tyres that were found not to lag";
   EXPECT_EQ(with({{"mu", 0.9}}).structure, DriveStructure::kBicycle);
   EXPECT_TRUE(with({{"downforce_f", 3e-4}}).effects[DriveEffect::kDownforce]);

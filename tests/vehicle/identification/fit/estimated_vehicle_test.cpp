@@ -57,7 +57,7 @@ TEST(EstimatedVehicle, HasTheTyresOfTheStructureThatWasIdentified) {
   EXPECT_EQ(std::get<AxleTyres<FialaTyre<double>>>(vehicle.tyres).front.mu, 0.9);
   EXPECT_EQ(vehicle.relaxation_length, 0.35);
   DriveModelOptions held;
-  held.tyre = DriveTyre::kMagicFormula;
+  held.tyre = kDriveTyre<SimpleMagicFormulaTyre>;
   held.start[DriveUnknown::kShape] = 1.35;
   vehicle = estimated_vehicle(car(), saturating, held);
   EXPECT_EQ(std::get<AxleTyres<SimpleMagicFormulaTyre<double>>>(vehicle.tyres).front.C, 1.35);

@@ -120,11 +120,11 @@ TEST(DriveModelOptions, FreeTheUnknownsOfTheStructureAndNoOthers) {
   EXPECT_EQ(
       freed(DriveStructure::kSaturation),
       "mu roll_gradient roll_arm relaxation_length load_transfer load_transfer_balance roll_frequency roll_damping ");
-  EXPECT_EQ(with_structure({}, DriveStructure::kSaturation).tyre, DriveTyre::kFiala);
+  EXPECT_EQ(with_structure({}, DriveStructure::kSaturation).tyre, kDriveTyre<FialaTyre>);
   EXPECT_EQ(freed(DriveStructure::kMagicFormula),
             "mu C E roll_gradient roll_arm relaxation_length load_transfer_loss load_transfer_balance "
             "roll_frequency roll_damping ");
-  EXPECT_EQ(with_structure({}, DriveStructure::kMagicFormula).tyre, DriveTyre::kMagicFormula);
+  EXPECT_EQ(with_structure({}, DriveStructure::kMagicFormula).tyre, kDriveTyre<SimpleMagicFormulaTyre>);
 }
 
 // Down the ladder again nothing of the richer structure stays free.
@@ -152,9 +152,13 @@ TEST(DriveModelOptions, ReadWhatIsFreeAndWhereItBegins) {
   EXPECT_NEAR(o.prior[DriveUnknown::kSteerBias], 2.0 * kDegree, 1e-15);
   EXPECT_EQ(o.prior[DriveUnknown::kAccelYBias], kInfinity);
   const DriveModelOptions magic = read_options("tyre = \"magic formula\"");
-  EXPECT_EQ(magic.tyre, DriveTyre::kMagicFormula);
+  EXPECT_EQ(magic.tyre, kDriveTyre<SimpleMagicFormulaTyre>);
   EXPECT_TRUE(magic.free[DriveUnknown::kMu] && magic.free[DriveUnknown::kShape]);
   EXPECT_FALSE(magic.free[DriveUnknown::kCurvature]);
+  const DriveModelOptions brush = read_options("tyre = \"fiala\"");
+  EXPECT_EQ(brush.tyre, kDriveTyre<FialaTyre>);
+  EXPECT_TRUE(brush.free[DriveUnknown::kMu]);
+  EXPECT_FALSE(brush.free[DriveUnknown::kShape] || brush.free[DriveUnknown::kCurvature]);
 }
 
 TEST(DriveModelOptions, RefuseByNameWhatTheStructureFrees) {
@@ -169,6 +173,7 @@ TEST(DriveModelOptions, RefuseByNameWhatTheStructureFrees) {
   EXPECT_THAT(refusal("estimate = [\"rol_arm\"]"), HasSubstr("'rol_arm' is not an unknown of the drive model"));
   EXPECT_THAT(refusal("estimate = [\"rol_arm\"]"), HasSubstr("'roll_arm'"));
   EXPECT_THAT(refusal("estimate = [\"E\"]"), HasSubstr("names E, which linear tyres do not have"));
+  EXPECT_THAT(refusal("tyre = \"fiala\"\nestimate = [\"C\"]"), HasSubstr("names C, which fiala tyres do not have"));
   EXPECT_THAT(refusal("smoothing = -1"), HasSubstr("must be >= 0 (0: none)"));
   EXPECT_THAT(refusal("prior = { roll_damping = 0 }"), HasSubstr("roll_damping"));
   EXPECT_THAT(refusal("tyre = \"brush\""), HasSubstr("magic formula"));

@@ -7,9 +7,9 @@
 #include "veridyn/aircraft/identification/options/identify_options.hpp"
 #include "veridyn/aircraft/model/subject.hpp"
 #include "veridyn/core/constants.hpp"
-#include "veridyn/estimation/analysis.hpp"
 #include "veridyn/estimation/judgement/evidence.hpp"
 #include "veridyn/estimation/regression/group_scatter.hpp"
+#include "veridyn/estimation/result/analysis.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::aircraft {

@@ -13,7 +13,7 @@
 #include "veridyn/aircraft/identification/evidence/missing_sensor_evidence.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/units.hpp"
-#include "veridyn/numerics/parallel.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 #include "veridyn/recording/inertial_consistency.hpp"
 #include "veridyn/recording/sample_evidence.hpp"
 #include "veridyn/recording/time_order.hpp"

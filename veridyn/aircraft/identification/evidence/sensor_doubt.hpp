@@ -8,7 +8,7 @@
 
 #include "veridyn/aircraft/identification/evidence/flight_evidence.hpp"
 #include "veridyn/aircraft/identification/signals/flight_signals.hpp"
-#include "veridyn/estimation/parameter.hpp"
+#include "veridyn/estimation/result/parameter.hpp"
 
 /// What errors of air data that a recording cannot exclude would do to the parameters of a coefficient.
 ///

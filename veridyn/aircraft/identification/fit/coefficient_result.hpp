@@ -8,10 +8,10 @@
 #include "veridyn/aircraft/identification/evidence/coefficient_evidence.hpp"
 #include "veridyn/aircraft/identification/signals/segments.hpp"
 #include "veridyn/aircraft/model/aero_model.hpp"
-#include "veridyn/estimation/analysis.hpp"
 #include "veridyn/estimation/regression/group_scatter.hpp"
 #include "veridyn/estimation/regression/regression.hpp"
 #include "veridyn/estimation/regression/structure_search.hpp"
+#include "veridyn/estimation/result/analysis.hpp"
 
 namespace veridyn::aircraft {
 

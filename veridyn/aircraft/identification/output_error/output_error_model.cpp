@@ -99,10 +99,10 @@ OutputErrorModel::OutputErrorModel(std::span<const FlownSpans> flights, const Su
 
   const FlightSignals& first = flights.front().signals;
   step_ = steps_over_two(first, simulation_) ? 2.0 * first.grid.step : first.grid.step;
-  for (std::size_t i = 0; i < flights.size(); ++i) add_flight(flights[i], i);
+  for (const FlownSpans& flight : flights) add_flight(flight);
 }
 
-void OutputErrorModel::add_flight(const FlownSpans& flight, std::size_t number) {
+void OutputErrorModel::add_flight(const FlownSpans& flight) {
   const FlightSignals& signals = flight.signals;
   const AirAcceleration air = flight.gusts ? air_acceleration(signals) : AirAcceleration{};
   for (const TimeSpan& span : flight.spans) {
@@ -110,10 +110,10 @@ void OutputErrorModel::add_flight(const FlownSpans& flight, std::size_t number) 
     std::size_t begin = first;
     for (std::size_t k = first; k < last; ++k) {
       if (complete(inputs_at(signals, air, k))) continue;
-      add_segment(flight, number, air, begin, k);
+      add_segment(flight, air, begin, k);
       begin = k + 1;
     }
-    if (begin < last) add_segment(flight, number, air, begin, last);
+    if (begin < last) add_segment(flight, air, begin, last);
   }
 }
 
@@ -169,15 +169,14 @@ OutputErrorModel::GridInputs OutputErrorModel::between(const GridInputs& a, cons
   return m;
 }
 
-void OutputErrorModel::add_segment(const FlownSpans& flight, std::size_t number, const AirAcceleration& air,
-                                   std::size_t begin, std::size_t end) {
+void OutputErrorModel::add_segment(const FlownSpans& flight, const AirAcceleration& air, std::size_t begin,
+                                   std::size_t end) {
   const FlightSignals& signals = flight.signals;
   if (static_cast<double>(end - begin) * signals.grid.step < kLeastDuration_s) return;
   const auto at = [&](std::size_t k) { return inputs_at(signals, air, k); };
   Segment segment;
   segment.begin = inputs_.size();
   segment.from_s = signals.grid.at(begin);
-  segment.flight = number;
   segment.of_flight = flight.name.empty() ? std::string() : " of " + flight.name;
   if (steps_over_two(signals, simulation_)) {
     const std::size_t count = (end - begin - 1) / 2 + 1;

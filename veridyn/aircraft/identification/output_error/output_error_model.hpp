@@ -85,8 +85,6 @@ class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel, 8, e
   [[nodiscard]] std::vector<estimation::RowMatrix> measured() const override;
   /// Where a segment lies in its flight.
   [[nodiscard]] TimeSpan segment_span(std::size_t segment) const override;
-  /// Which of the flights a segment is of.
-  [[nodiscard]] std::size_t flight_of(std::size_t segment) const { return segments_[segment].flight; }
   /// Between two samples of the outputs [s].
   [[nodiscard]] double sample_interval_s() const override { return step_; }
   /// The states that are simulated, which are the first outputs.
@@ -133,7 +131,6 @@ class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel, 8, e
     std::size_t begin = 0;  // into inputs_
     Eigen::Index samples = 0;
     double from_s = 0.0, to_s = 0.0;
-    std::size_t flight = 0;
     std::string of_flight;  // for its name
     std::vector<estimation::ModelParameter> initial;
   };
@@ -149,9 +146,8 @@ class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel, 8, e
   /// On the line from `a` (share 0) to `b` (share 1).
   [[nodiscard]] static GridInputs between(const GridInputs& a, const GridInputs& b, double share);
   // A stretch of complete samples [begin, end) becomes a segment: its inputs at every half step.
-  void add_segment(const FlownSpans& flight, std::size_t number, const AirAcceleration& air, std::size_t begin,
-                   std::size_t end);
-  void add_flight(const FlownSpans& flight, std::size_t number);
+  void add_segment(const FlownSpans& flight, const AirAcceleration& air, std::size_t begin, std::size_t end);
+  void add_flight(const FlownSpans& flight);
   /// @param air  acceleration of the air in addition to that of the inputs, at each of them; empty: none
   template <typename Scalar>
   bool simulate_in(std::size_t segment, const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& theta,

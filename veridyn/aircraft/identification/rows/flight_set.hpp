@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "veridyn/aircraft/identification/rows/prepared_flight.hpp"
-#include "veridyn/estimation/estimate.hpp"
+#include "veridyn/estimation/result/estimate.hpp"
 
 /// What several flights of one aircraft are together.
 namespace veridyn::aircraft {

@@ -15,9 +15,9 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
-#include "veridyn/numerics/parallel.hpp"
 #include "veridyn/numerics/rotation.hpp"
 #include "veridyn/numerics/statistics.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::aircraft {
 namespace {

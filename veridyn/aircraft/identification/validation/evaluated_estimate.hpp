@@ -7,7 +7,7 @@
 #include "veridyn/aircraft/identification/options/identify_options.hpp"
 #include "veridyn/aircraft/identification/rows/prepared_flight.hpp"
 #include "veridyn/aircraft/model/subject.hpp"
-#include "veridyn/estimation/estimate.hpp"
+#include "veridyn/estimation/result/estimate.hpp"
 
 namespace veridyn::aircraft {
 

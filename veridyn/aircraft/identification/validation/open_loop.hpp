@@ -9,9 +9,9 @@
 #include "veridyn/aircraft/identification/rows/flight_rows.hpp"
 #include "veridyn/aircraft/model/subject.hpp"
 #include "veridyn/core/progress.hpp"
-#include "veridyn/estimation/estimate.hpp"
 #include "veridyn/estimation/judgement/evidence.hpp"
 #include "veridyn/estimation/open_loop/open_loop.hpp"
+#include "veridyn/estimation/result/estimate.hpp"
 
 namespace veridyn::aircraft {
 

@@ -6,7 +6,7 @@
 
 #include "veridyn/core/progress.hpp"
 #include "veridyn/estimation/judgement/evidence.hpp"
-#include "veridyn/estimation/parameter.hpp"
+#include "veridyn/estimation/result/parameter.hpp"
 #include "veridyn/recording/delays.hpp"
 #include "veridyn/vehicle/identification/evidence/drive_consistency.hpp"
 #include "veridyn/vehicle/identification/signals/drive_segments.hpp"

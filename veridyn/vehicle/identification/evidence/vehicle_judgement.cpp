@@ -155,7 +155,7 @@ Evidence check_residual_on_holdout(const estimation::PredictedQuantity& there,
 Evidence by_p(const char* name, double p, const VehicleIdentifyOptions& options, std::string agree,
               std::string contradict) {
   const bool agrees = p >= options.contradiction_level;
-  const Outcome otherwise = options.model.tyre == DriveTyre::kLinear ? Outcome::kFailed : Outcome::kCare;
+  const Outcome otherwise = options.model.tyre == kDriveTyre<LinearTyre> ? Outcome::kFailed : Outcome::kCare;
   return {.name = name,
           .outcome = passed_or(agrees, otherwise),
           .value = p,

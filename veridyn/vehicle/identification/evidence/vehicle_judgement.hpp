@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "veridyn/estimation/analysis.hpp"
 #include "veridyn/estimation/judgement/judgement.hpp"
 #include "veridyn/estimation/judgement/unfinished_search.hpp"
+#include "veridyn/estimation/result/analysis.hpp"
 #include "veridyn/vehicle/identification/evidence/vehicle_agreement.hpp"
 #include "veridyn/vehicle/identification/fit/vehicle_estimates.hpp"
 #include "veridyn/vehicle/identification/structure/tried_structure.hpp"

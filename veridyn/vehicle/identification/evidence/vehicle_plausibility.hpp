@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "veridyn/estimation/judgement/evidence.hpp"
-#include "veridyn/estimation/parameter.hpp"
+#include "veridyn/estimation/result/parameter.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
 
 namespace veridyn::vehicle {

@@ -17,8 +17,6 @@
 #include "veridyn/numerics/signal_band.hpp"
 #include "veridyn/numerics/statistics.hpp"
 #include "veridyn/vehicle/identification/fit/sampled_input.hpp"
-#include "veridyn/vehicle/tyre/fiala_tyre.hpp"
-#include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -346,23 +344,22 @@ auto DriveParametricModel::with_model(const Parameters<Scalar>& theta, const Wor
     }
     return work(model, std::integral_constant<int, 2>());
   };
-  if (options_.tyre == DriveTyre::kLinear)
-    return with_tyres(LinearTyre<Scalar>{.stiffness = p.C_f}, LinearTyre<Scalar>{.stiffness = p.C_r});
-  if (options_.tyre == DriveTyre::kFiala) {
-    const Scalar& mu = unknown(DriveUnknown::kMu);
-    return with_tyres(FialaTyre<Scalar>{.stiffness = p.C_f, .mu = mu}, FialaTyre<Scalar>{.stiffness = p.C_r, .mu = mu});
-  }
-  const PerWheel<Scalar> load = static_loads(p, options_.gravity);
-  const auto tyre = [&](const Scalar& stiffness, const Scalar& nominal) {
-    SimpleMagicFormulaTyre<Scalar> t;
-    t.stiffness = stiffness;
-    t.mu = unknown(DriveUnknown::kMu);
-    t.C = unknown(DriveUnknown::kShape);
-    t.E = unknown(DriveUnknown::kCurvature);
-    t.nominal_load = nominal;
-    return t;
-  };
-  return with_tyres(tyre(p.C_f, load[kFrontLeft]), tyre(p.C_r, load[kRearLeft]));
+  return std::visit(
+      [&]<typename Tyre>(const TyreLaw<Tyre>&) {
+        const auto tyre = [&](const Scalar& stiffness, std::size_t wheel) {
+          auto t = Tyre().template cast<Scalar>();
+          t.stiffness = stiffness;
+          if constexpr (Tyre::kNeedsFriction) t.mu = unknown(DriveUnknown::kMu);
+          if constexpr (TyreWithShape<Tyre>) {
+            t.C = unknown(DriveUnknown::kShape);
+            t.E = unknown(DriveUnknown::kCurvature);
+          }
+          if constexpr (requires { t.nominal_load; }) t.nominal_load = static_loads(p, options_.gravity)[wheel];
+          return t;
+        };
+        return with_tyres(tyre(p.C_f, kFrontLeft), tyre(p.C_r, kRearLeft));
+      },
+      options_.tyre);
 }
 
 template <typename Scalar>

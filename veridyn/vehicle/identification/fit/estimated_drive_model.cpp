@@ -63,7 +63,7 @@ EstimatedDriveModel estimated_drive_model(const estimation::Estimate& estimate,
     if (estimate.find("roll_gradient") != nullptr)
       given.options.structure = has_shape ? DriveStructure::kMagicFormula : DriveStructure::kSaturation;
     if (estimate.find("relaxation_length") == nullptr) given.options.start[DriveUnknown::kRelaxationLength] = 0.0;
-    given.options.tyre = has_shape ? DriveTyre::kMagicFormula : DriveTyre::kFiala;
+    given.options.tyre = has_shape ? kDriveTyre<SimpleMagicFormulaTyre> : kDriveTyre<FialaTyre>;
   }
   return given;
 }

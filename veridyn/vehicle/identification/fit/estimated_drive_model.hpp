@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "veridyn/estimation/estimate.hpp"
+#include "veridyn/estimation/result/estimate.hpp"
 #include "veridyn/vehicle/identification/options/drive_model_options.hpp"
 
 namespace veridyn::vehicle {

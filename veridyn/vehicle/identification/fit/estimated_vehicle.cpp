@@ -44,21 +44,27 @@ Vehicle estimated_vehicle(Vehicle vehicle, std::span<const Parameter> parameters
     return take_excited(parameters, name, value);
   };
   double C = model.start[DriveUnknown::kShape], E = model.start[DriveUnknown::kCurvature];
-  const bool has_shape = take_fitted(parameters, "C", C) || model.tyre == DriveTyre::kMagicFormula;
-  if (fitted("mu") && has_shape) {
-    take_fitted(parameters, "E", E);
-    auto tyres = tyres_by_numbers<SimpleMagicFormulaTyre<double>>(p);
-    tyres.front.C = tyres.rear.C = C;
-    tyres.front.E = tyres.rear.E = E;
-    vehicle.tyres = tyres;
-    vehicle.tyre_text = "magic formula";
-  } else if (fitted("mu")) {
-    vehicle.tyres = tyres_by_numbers<FialaTyre<double>>(p);
-    vehicle.tyre_text = "fiala";
+  DriveTyre law = model.tyre;
+  if (take_fitted(parameters, "C", C)) law = kDriveTyre<SimpleMagicFormulaTyre>;
+  take_fitted(parameters, "E", E);
+  if (fitted("mu")) {
+    if (!has_unknown(law, DriveUnknown::kMu)) law = kDriveTyre<FialaTyre>;
   } else if (excited("C_f") || excited("C_r")) {
-    vehicle.tyres = tyres_by_numbers<LinearTyre<double>>(p);
-    vehicle.tyre_text = "linear";
+    law = kDriveTyre<LinearTyre>;
+  } else {
+    return vehicle;
   }
+  std::visit(
+      [&]<typename Tyre>(const TyreLaw<Tyre>&) {
+        AxleTyres<Tyre> tyres = tyres_by_numbers<Tyre>(p);
+        if constexpr (TyreWithShape<Tyre>) {
+          tyres.front.C = tyres.rear.C = C;
+          tyres.front.E = tyres.rear.E = E;
+        }
+        vehicle.tyres = tyres;
+        vehicle.tyre_text = Tyre::kStudyName;
+      },
+      law);
   return vehicle;
 }
 

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "veridyn/estimation/parameter.hpp"
+#include "veridyn/estimation/result/parameter.hpp"
 #include "veridyn/vehicle/identification/options/drive_model_options.hpp"
 #include "veridyn/vehicle/model/vehicle.hpp"
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "veridyn/estimation/parameter.hpp"
+#include "veridyn/estimation/result/parameter.hpp"
 #include "veridyn/vehicle/identification/options/vehicle_method.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "veridyn/core/progress.hpp"
-#include "veridyn/estimation/parameter.hpp"
+#include "veridyn/estimation/result/parameter.hpp"
 #include "veridyn/estimation/uncertainty/profile_likelihood.hpp"
 #include "veridyn/vehicle/identification/fit/vehicle_estimates.hpp"
 

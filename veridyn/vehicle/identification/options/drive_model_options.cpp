@@ -175,14 +175,25 @@ DriveModelOptions::DriveModelOptions() {
   prior[DriveUnknown::kCurvature] = 0.5;
 }
 
+bool has_unknown(const DriveTyre& tyre, DriveUnknown u) {
+  return std::visit(
+      [u]<typename Tyre>(const TyreLaw<Tyre>&) {
+        if (u == DriveUnknown::kMu) return Tyre::kNeedsFriction;
+        return TyreWithShape<Tyre> && (u == DriveUnknown::kShape || u == DriveUnknown::kCurvature);
+      },
+      tyre);
+}
+
 void DriveModelOptions::read_keys(const StudyTable& table) {
-  const std::vector<std::string> tyres{"linear", "magic formula"};
-  tyre = table.choice_or("tyre", tyres, "linear") == "linear" ? DriveTyre::kLinear : DriveTyre::kMagicFormula;
+  std::vector<std::string> tyres;
+  AllTyresByNumbers::for_each([&]<typename Tyre>() { tyres.emplace_back(Tyre::kStudyName); });
+  const std::string tyre_name = table.choice_or("tyre", tyres, "linear");
+  AllTyresByNumbers::for_each([&]<typename Tyre>() {
+    if (tyre_name == Tyre::kStudyName) tyre = TyreLaw<Tyre>();
+  });
   const std::vector<std::string> names(kDriveUnknownNames.begin(), kDriveUnknownNames.end());
-  if (tyre == DriveTyre::kMagicFormula) {
-    free[DriveUnknown::kMu] = true;
-    free[DriveUnknown::kShape] = true;
-  }
+  for (const DriveUnknown u : {DriveUnknown::kMu, DriveUnknown::kShape})
+    if (has_unknown(tyre, u)) free[u] = true;
   if (table.has("estimate")) {
     free.fill(false);
     for (const std::string& name : table.texts("estimate")) {
@@ -202,12 +213,10 @@ void DriveModelOptions::read_keys(const StudyTable& table) {
       free[unknown] = true;
     }
   }
-  if (tyre == DriveTyre::kLinear) {
-    for (const DriveUnknown u : {DriveUnknown::kMu, DriveUnknown::kShape, DriveUnknown::kCurvature}) {
-      if (free[u])
-        table.fail("estimate", fmt::format("names {}, which linear tyres do not have (tyre = \"magic formula\")",
-                                           kDriveUnknownNames[u]));
-    }
+  for (const DriveUnknown u : {DriveUnknown::kMu, DriveUnknown::kShape, DriveUnknown::kCurvature}) {
+    if (free[u] && !has_unknown(tyre, u))
+      table.fail("estimate", fmt::format("names {}, which {} tyres do not have (tyre = \"magic formula\")",
+                                         kDriveUnknownNames[u], tyre_name));
   }
   if (table.has("smoothing")) {
     smoothing_Hz = table.number("smoothing", "Hz");
@@ -259,9 +268,9 @@ DriveModelOptions with_structure(DriveModelOptions options, DriveStructure struc
   options.structure = structure;
   if (structure == DriveStructure::kScaledAccel) options.free[DriveUnknown::kAccelYScale] = true;
   for (const DriveUnknown u : kRolls) options.free[u] = frees(structure, u);
-  if (saturates(structure) && options.tyre == DriveTyre::kLinear) {
+  if (saturates(structure) && options.tyre == kDriveTyre<LinearTyre>) {
     const bool has_shape = structure == DriveStructure::kMagicFormula;
-    options.tyre = has_shape ? DriveTyre::kMagicFormula : DriveTyre::kFiala;
+    options.tyre = has_shape ? kDriveTyre<SimpleMagicFormulaTyre> : kDriveTyre<FialaTyre>;
     options.free[DriveUnknown::kMu] = true;
     options.free[DriveUnknown::kShape] = options.free[DriveUnknown::kCurvature] = has_shape;
     // Dry road and gravel: 0.6 to 1.2.

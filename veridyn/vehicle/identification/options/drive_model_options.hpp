@@ -9,6 +9,7 @@
 #include "veridyn/estimation/output_error/parametric_model.hpp"
 #include "veridyn/vehicle/identification/options/drive_structure.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
+#include "veridyn/vehicle/tyre/tyre_laws.hpp"
 
 namespace veridyn::vehicle {
 
@@ -94,30 +95,30 @@ inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownUnits{
     "1",     "1",     "s^2/m^2", "s^2/m^2", "1",   "1", "rad/s", "1",         "rad", "1", "rad/s",
     "m/s^2", "1",     "rad",     "rad/s",   "rad", "s", "s",     "s",         "s"};
 static_assert(!kDriveUnknownNames.back().empty() && !kDriveUnknownUnits.back().empty(), "one is missing");
-/// Whether it is the vehicle's, and not of its sensors or the day.
-[[nodiscard]] constexpr bool is_of_the_vehicle(DriveUnknown u) { return u < DriveUnknown::kRollFrequency; }
 /// Whether it is an offset of a sensor, which each drive has its own of.
 [[nodiscard]] constexpr bool is_bias(DriveUnknown u) {
   return u == DriveUnknown::kSteerBias || u == DriveUnknown::kYawRateBias || u == DriveUnknown::kAccelYBias ||
          u == DriveUnknown::kRollBias || u == DriveUnknown::kRollRateBias || u == DriveUnknown::kSideslipBias;
 }
 
-/// Tyres of the drive model.
-enum class DriveTyre {
-  kLinear,        ///< F = C alpha
-  kFiala,         ///< a brush tyre, whose slope falls with its force, up to mu F_z
-  kMagicFormula,  ///< F = D sin(C atan(B alpha - E (B alpha - atan(B alpha)))), D = mu F_z, B C D = cornering stiffness
-};
+/// Tyres of the drive model: any law that numbers describe. Its stiffnesses are C_f and C_r; mu, C and E are unknowns
+/// where it has them.
+using DriveTyre = AllTyresByNumbers::Variant<TyreLaw>;
+/// One of them: `kDriveTyre<LinearTyre>`.
+template <template <typename> typename Tyre>
+inline constexpr DriveTyre kDriveTyre = TyreLaw<Tyre<double>>();
+/// Whether such tyres have mu, C or E.
+[[nodiscard]] bool has_unknown(const DriveTyre& tyre, DriveUnknown u);
 
 /// Study keys of `[identify]`.
 struct DriveModelOptions {
-  DriveTyre tyre = DriveTyre::kLinear;  ///< `tyre = "linear"` or "magic formula"
+  DriveTyre tyre = kDriveTyre<LinearTyre>;  ///< `tyre = "linear"`, "fiala" or "magic formula"
   /// What moves; no key of its own: `VehicleIdentifyOptions::structure` chooses. Its unknowns are free.
   DriveStructure structure = DriveStructure::kBicycle;
   /// No key of its own either: `VehicleIdentifyOptions::effects`.
   DriveEffects effects{};
   /// `estimate = ["C_f", "C_r", ...]`: names of what is free besides the structure's unknowns. Default: C_f, C_r, I_z,
-  /// the three biases, and with the Magic Formula mu and C. What is not free stays at its start.
+  /// the three biases, and mu and C of tyres that have them. What is not free stays at its start.
   PerDriveUnknown<bool> free{};
   /// `[identify.start] mu = 1`: where the search begins; also the mean of the prior. NaN: by the vehicle's geometry,
   /// see `with_geometry`.

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "veridyn/estimation/estimate.hpp"
+#include "veridyn/estimation/result/estimate.hpp"
 #include "veridyn/vehicle/identification/signals/drive_signals.hpp"
 
 namespace veridyn::vehicle {

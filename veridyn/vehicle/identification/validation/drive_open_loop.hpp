@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "veridyn/core/progress.hpp"
-#include "veridyn/estimation/estimate.hpp"
 #include "veridyn/estimation/judgement/evidence.hpp"
 #include "veridyn/estimation/open_loop/open_loop.hpp"
+#include "veridyn/estimation/result/estimate.hpp"
 #include "veridyn/vehicle/identification/options/drive_open_loop_options.hpp"
 #include "veridyn/vehicle/identification/signals/drive_path.hpp"
 #include "veridyn/vehicle/identification/signals/drive_segments.hpp"

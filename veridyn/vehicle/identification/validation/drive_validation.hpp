@@ -7,7 +7,7 @@
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/recording.hpp"
 #include "veridyn/core/study.hpp"
-#include "veridyn/estimation/analysis.hpp"
+#include "veridyn/estimation/result/analysis.hpp"
 #include "veridyn/vehicle/identification/fit/drive_parametric_model.hpp"
 #include "veridyn/vehicle/identification/signals/drive_signals.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"

@@ -1,4 +1,4 @@
-#include "veridyn/estimation/parameter.hpp"
+#include "veridyn/estimation/result/parameter.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "veridyn/estimation/estimate_comparison.hpp"
+#include "veridyn/estimation/result/estimate_comparison.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "veridyn/estimation/estimate.hpp"
+#include "veridyn/estimation/result/estimate.hpp"
 
 namespace veridyn::estimation {
 

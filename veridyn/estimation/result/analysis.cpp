@@ -1,4 +1,4 @@
-#include "veridyn/estimation/analysis.hpp"
+#include "veridyn/estimation/result/analysis.hpp"
 
 #include <algorithm>
 #include <cmath>

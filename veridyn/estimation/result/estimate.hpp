@@ -8,7 +8,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/judgement/judgement.hpp"
-#include "veridyn/estimation/parameter.hpp"
+#include "veridyn/estimation/result/parameter.hpp"
 
 namespace veridyn::estimation {
 

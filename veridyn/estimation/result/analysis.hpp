@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/estimation/estimate.hpp"
 #include "veridyn/estimation/judgement/evidence.hpp"
 #include "veridyn/estimation/judgement/judgement.hpp"
-#include "veridyn/estimation/parameter.hpp"
+#include "veridyn/estimation/result/estimate.hpp"
+#include "veridyn/estimation/result/parameter.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::estimation {

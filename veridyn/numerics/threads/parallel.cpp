@@ -1,4 +1,4 @@
-#include "veridyn/numerics/parallel.hpp"
+#include "veridyn/numerics/threads/parallel.hpp"
 
 #include <algorithm>
 #include <atomic>

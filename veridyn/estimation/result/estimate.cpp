@@ -1,4 +1,4 @@
-#include "veridyn/estimation/estimate.hpp"
+#include "veridyn/estimation/result/estimate.hpp"
 
 namespace veridyn::estimation {
 
