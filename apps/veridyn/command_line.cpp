@@ -15,9 +15,9 @@
 #include <new>
 #include <optional>
 
-#include "apps/veridyn/console.hpp"
-#include "apps/veridyn/launcher.hpp"
-#include "apps/veridyn/version.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/launcher.hpp"
+#include "apps/veridyn/run/version.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/core/stderr_text.hpp"

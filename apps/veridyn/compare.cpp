@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "apps/veridyn/console.hpp"
-#include "apps/veridyn/results/output_folder.hpp"
-#include "apps/veridyn/version.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
+#include "apps/veridyn/run/version.hpp"
 #include "veridyn/estimation/result/estimate_comparison.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/report/comparison_report.hpp"

@@ -4,11 +4,11 @@
 
 #include <cmath>
 
-#include "apps/veridyn/console.hpp"
-#include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/live/cue_live.hpp"
-#include "apps/veridyn/results/output_folder.hpp"
-#include "apps/veridyn/version.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/domains.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
+#include "apps/veridyn/run/version.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/cueing/cueing_study.hpp"
 #include "veridyn/report/cueing_report.hpp"

@@ -1,7 +1,7 @@
 // veridyn demo: the full pipeline on a built-in aircraft and a simulated flight, a car and its scaled model, and an arm
 // that lifts a weight, and the car's double lane change on a motion platform; needs no file.
 
-#include "apps/veridyn/domains.hpp"
+#include "apps/veridyn/run/domains.hpp"
 
 namespace veridyn::app {
 namespace {

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <optional>
 
-#include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/results/analysis_results.hpp"
 #include "apps/veridyn/results/export_results.hpp"
-#include "apps/veridyn/results/output_folder.hpp"
 #include "apps/veridyn/results/study_tables.hpp"
+#include "apps/veridyn/run/domains.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
 #include "veridyn/aircraft/model/estimated_subject.hpp"
 #include "veridyn/aircraft/model/jsbsim.hpp"
 #include "veridyn/aircraft/simulation/simulate_study.hpp"

@@ -5,11 +5,11 @@
 #include <optional>
 #include <variant>
 
-#include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/results/export_results.hpp"
-#include "apps/veridyn/results/output_folder.hpp"
 #include "apps/veridyn/results/study_tables.hpp"
-#include "apps/veridyn/version.hpp"
+#include "apps/veridyn/run/domains.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
+#include "apps/veridyn/run/version.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/estimation/judgement/subject_grades.hpp"

@@ -5,14 +5,14 @@
 #include <optional>
 #include <utility>
 
-#include "apps/veridyn/console.hpp"
-#include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/results/aircraft_results.hpp"
 #include "apps/veridyn/results/checkpoint.hpp"
 #include "apps/veridyn/results/drive_results.hpp"
 #include "apps/veridyn/results/muscle_results.hpp"
-#include "apps/veridyn/results/output_folder.hpp"
-#include "apps/veridyn/work_progress.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/domains.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
+#include "apps/veridyn/run/work_progress.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::app {

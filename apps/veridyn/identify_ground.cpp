@@ -4,11 +4,11 @@
 #include <utility>
 #include <vector>
 
-#include "apps/veridyn/console.hpp"
-#include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/results/analysis_results.hpp"
-#include "apps/veridyn/results/output_folder.hpp"
-#include "apps/veridyn/version.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/domains.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
+#include "apps/veridyn/run/version.hpp"
 #include "veridyn/aircraft/sensors/air_data_calibration.hpp"
 #include "veridyn/aircraft/sensors/swing_test.hpp"
 #include "veridyn/io/results/estimate_json.hpp"

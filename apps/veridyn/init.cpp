@@ -3,11 +3,11 @@
 
 #include <filesystem>
 
-#include "apps/veridyn/console.hpp"
 #include "apps/veridyn/cueing_template.hpp"
 #include "apps/veridyn/ground_templates.hpp"
 #include "apps/veridyn/muscle_template.hpp"
-#include "apps/veridyn/results/output_folder.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
 #include "apps/veridyn/vehicle_template.hpp"
 #include "veridyn/aircraft/sensors/channel_map.hpp"
 #include "veridyn/core/error.hpp"

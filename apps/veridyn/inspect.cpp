@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "apps/veridyn/console.hpp"
 #include "apps/veridyn/inspect_model.hpp"
+#include "apps/veridyn/run/console.hpp"
 #include "veridyn/aircraft/sensors/channel_map.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/log_formats.hpp"

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "apps/veridyn/console.hpp"
-#include "apps/veridyn/results/output_folder.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
 #include "veridyn/muscle/simulation/pose_table.hpp"
 #include "veridyn/muscle/study/model_check.hpp"

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "apps/veridyn/command.hpp"
+#include "apps/veridyn/run/command.hpp"
 
 namespace veridyn::app {
 

@@ -1,9 +1,9 @@
 // veridyn reconstruct STUDY: airspeed, flow angles and wind only.
 #include <fmt/format.h>
 
-#include "apps/veridyn/console.hpp"
-#include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/results/aircraft_results.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/domains.hpp"
 
 namespace veridyn::app {
 namespace {

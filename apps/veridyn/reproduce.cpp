@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <optional>
 
-#include "apps/veridyn/console.hpp"
 #include "apps/veridyn/reproduce_studies.hpp"
-#include "apps/veridyn/results/output_folder.hpp"
-#include "apps/veridyn/version.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
+#include "apps/veridyn/run/version.hpp"
 #include "bench/reproduction/aircraft/reproduction.hpp"
 #include "bench/reproduction/report/aircraft_reproduction_report.hpp"
 #include "bench/reproduction/report/cueing_reproduction_report.hpp"

@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include "apps/veridyn/console.hpp"
-#include "apps/veridyn/domains.hpp"
-#include "apps/veridyn/results/output_folder.hpp"
 #include "apps/veridyn/results/study_tables.hpp"
-#include "apps/veridyn/version.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/domains.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
+#include "apps/veridyn/run/version.hpp"
 #include "veridyn/estimation/judgement/subject_grades.hpp"
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/report/document/html.hpp"

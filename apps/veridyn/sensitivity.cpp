@@ -6,12 +6,12 @@
 #include <optional>
 #include <stdexcept>
 
-#include "apps/veridyn/console.hpp"
-#include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/results/checkpoint.hpp"
-#include "apps/veridyn/results/output_folder.hpp"
 #include "apps/veridyn/results/response_results.hpp"
-#include "apps/veridyn/version.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/domains.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
+#include "apps/veridyn/run/version.hpp"
 #include "veridyn/io/results/indices_csv.hpp"
 #include "veridyn/muscle/sensitivity/sensitivity_tables.hpp"
 #include "veridyn/muscle/study/muscle_study_sensitivity.hpp"

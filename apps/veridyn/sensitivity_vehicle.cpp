@@ -3,10 +3,10 @@
 
 #include <memory>
 
-#include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/results/response_results.hpp"
 #include "apps/veridyn/results/study_tables.hpp"
-#include "apps/veridyn/version.hpp"
+#include "apps/veridyn/run/domains.hpp"
+#include "apps/veridyn/run/version.hpp"
 #include "veridyn/vehicle/drive_sensitivity.hpp"
 
 namespace veridyn::app {

@@ -2,10 +2,10 @@
 // musculoskeletal models: simulate_vehicle.cpp, simulate_muscle.cpp.
 #include <fmt/format.h>
 
-#include "apps/veridyn/console.hpp"
-#include "apps/veridyn/domains.hpp"
-#include "apps/veridyn/results/output_folder.hpp"
 #include "apps/veridyn/results/study_tables.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/domains.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
 #include "veridyn/aircraft/simulation/simulate_study.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/io/tables/csv.hpp"

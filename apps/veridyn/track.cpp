@@ -6,13 +6,13 @@
 #include <chrono>
 #include <cmath>
 
-#include "apps/veridyn/console.hpp"
-#include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/live/follow.hpp"
 #include "apps/veridyn/results/analysis_results.hpp"
-#include "apps/veridyn/results/output_folder.hpp"
-#include "apps/veridyn/version.hpp"
-#include "apps/veridyn/work_progress.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/domains.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
+#include "apps/veridyn/run/version.hpp"
+#include "apps/veridyn/run/work_progress.hpp"
 #include "veridyn/aircraft/track_flight.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/io/results/estimate_json.hpp"

@@ -3,13 +3,13 @@
 
 #include <optional>
 
-#include "apps/veridyn/console.hpp"
 #include "apps/veridyn/live/follow.hpp"
 #include "apps/veridyn/results/analysis_results.hpp"
 #include "apps/veridyn/results/drive_results.hpp"
 #include "apps/veridyn/results/study_tables.hpp"
-#include "apps/veridyn/version.hpp"
-#include "apps/veridyn/work_progress.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/version.hpp"
+#include "apps/veridyn/run/work_progress.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/report/document/html.hpp"

@@ -1,9 +1,9 @@
 // veridyn validate STUDY --estimate-file FILE: an estimate against other data.
-#include "apps/veridyn/console.hpp"
-#include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/results/aircraft_results.hpp"
 #include "apps/veridyn/results/drive_results.hpp"
 #include "apps/veridyn/results/muscle_results.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/domains.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 
 namespace veridyn::app {

@@ -271,6 +271,22 @@ estimation::Estimate estimate_of(const FlightStudy& study, const FlightAnalysis&
   return make_estimate(study.subject, analysis.coefficients, analysis.others.output_error);
 }
 
+/// That nothing was identified, where that is so.
+std::vector<estimation::Evidence> nothing_identified(std::span<const CoefficientResult> coefficients) {
+  const bool predicts = std::ranges::any_of(coefficients, [](const CoefficientResult& result) {
+    return result.verdict == estimation::GroupVerdict::kIdentified ||
+           result.verdict == estimation::GroupVerdict::kEffective;
+  });
+  if (predicts) return {};
+  return {{.name = "identified coefficients",
+           .outcome = estimation::Outcome::kMissing,
+           .value = 0.0,
+           .limit = 1.0,
+           .scale = "coefficients",
+           .text = "no coefficient was identified: there is nothing that could predict",
+           .bears_on = estimation::Purpose::kPrediction}};
+}
+
 /// What estimate.json will say of an analysis that is complete but for it.
 estimation::Estimate summarise(std::span<const FlightStudy> studies, const FlightAnalysis& analysis) {
   estimation::Estimate estimate = estimate_of(studies.front(), analysis);
@@ -283,7 +299,8 @@ estimation::Estimate summarise(std::span<const FlightStudy> studies, const Fligh
   estimate.warnings = warnings_of(studies, analysis);
   std::vector<estimation::Evidence> of_all = recording_rows(analysis.flights);
   for (const std::vector<estimation::Evidence>& rows :
-       {flown_evidence(analysis.validation), open_loop_evidence(analysis.open_loop)})
+       {flown_evidence(analysis.validation), open_loop_evidence(analysis.open_loop),
+        nothing_identified(analysis.coefficients)})
     of_all.insert(of_all.end(), rows.begin(), rows.end());
   estimate.judgement = judgement_of(analysis, of_all);
   estimate.evidence = std::move(of_all);

@@ -108,10 +108,7 @@ VehicleAnalysis driven_open_loop(VehicleAnalysis analysis, OpenLoopUse use, cons
       drive_open_loop({analysis.signals, analysis.segments, use, study.vehicle, study.identify.model, estimate},
                       study.open_loop, progress);
   VehicleIdentification& id = analysis.identification;
-  for (estimation::Evidence& row : open_loop_evidence(analysis.open_loop)) {
-    if (!row.passed()) id.warnings.push_back(row.text);
-    id.checks.push_back(std::move(row));
-  }
+  for (estimation::Evidence& row : open_loop_evidence(analysis.open_loop)) id.checks.push_back(std::move(row));
   id.judgement = estimation::judge(id.checks);
   return analysis;
 }

@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "apps/veridyn/console.hpp"
 #include "apps/veridyn/live/camera_report.hpp"
 #include "apps/veridyn/live/camera_track.hpp"
-#include "apps/veridyn/results/output_folder.hpp"
-#include "apps/veridyn/version.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
+#include "apps/veridyn/run/version.hpp"
 #include "veridyn/camera/calibration/calibration_checks.hpp"
 #include "veridyn/camera/calibration/calibration_file.hpp"
 #include "veridyn/camera/fusion/fused_drive.hpp"

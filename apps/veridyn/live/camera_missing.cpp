@@ -1,7 +1,7 @@
 // veridyn camera, where the program was built without OpenCV.
-#include "apps/veridyn/command.hpp"
 #include "apps/veridyn/live/camera_run.hpp"
 #include "apps/veridyn/live/rig_camera.hpp"
+#include "apps/veridyn/run/command.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::app {

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/veridyn/console.hpp"
 #include "apps/veridyn/live/pose_sender.hpp"
-#include "apps/veridyn/results/output_folder.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
 #include "veridyn/camera/calibration/calibration_file.hpp"
 #include "veridyn/camera/tracking/camera_device.hpp"
 #include "veridyn/camera/tracking/car_tracker.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "apps/veridyn/command.hpp"
+#include "apps/veridyn/run/command.hpp"
 
 namespace veridyn::app {
 

@@ -9,12 +9,12 @@
 #include <cmath>
 #include <random>
 
-#include "apps/veridyn/console.hpp"
 #include "apps/veridyn/live/camera_run.hpp"
 #include "apps/veridyn/live/live_drive.hpp"
 #include "apps/veridyn/live/live_operator.hpp"
-#include "apps/veridyn/results/output_folder.hpp"
-#include "apps/veridyn/version.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
+#include "apps/veridyn/run/version.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/live/rig/live_replay.hpp"

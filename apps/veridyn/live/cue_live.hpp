@@ -1,6 +1,6 @@
 #pragma once
 
-#include "apps/veridyn/domains.hpp"
+#include "apps/veridyn/run/domains.hpp"
 
 namespace veridyn::app {
 

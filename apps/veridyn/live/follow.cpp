@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "apps/veridyn/console.hpp"
+#include "apps/veridyn/run/console.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::app {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "apps/veridyn/command.hpp"
+#include "apps/veridyn/run/command.hpp"
 #include "veridyn/core/study.hpp"
 
 namespace veridyn::app {

@@ -10,9 +10,9 @@
 #include <optional>
 #include <thread>
 
-#include "apps/veridyn/console.hpp"
 #include "apps/veridyn/live/live_drive.hpp"
 #include "apps/veridyn/live/operator_keys.hpp"
+#include "apps/veridyn/run/console.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/live/telemetry/sign_checker.hpp"
 #ifdef VERIDYN_HAS_PAGE

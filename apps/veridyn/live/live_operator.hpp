@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/veridyn/command.hpp"
+#include "apps/veridyn/run/command.hpp"
 #include "veridyn/live/rig/live_loop.hpp"
 
 namespace veridyn::app {

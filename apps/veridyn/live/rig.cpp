@@ -1,11 +1,11 @@
 // veridyn rig vehicle|platform STUDY: the virtual rig, so that anyone can run all of a live rig at home.
 #include <fmt/format.h>
 
-#include "apps/veridyn/console.hpp"
-#include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/live/rig_camera.hpp"
 #include "apps/veridyn/live/rig_car.hpp"
 #include "apps/veridyn/live/rig_test.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/domains.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/live/rig/live_study.hpp"
 #include "veridyn/live/virtual/virtual_platform.hpp"

@@ -8,10 +8,10 @@
 #include <filesystem>
 #include <vector>
 
-#include "apps/veridyn/console.hpp"
-#include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/live/pose_sender.hpp"
-#include "apps/veridyn/results/output_folder.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/domains.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
 #include "veridyn/camera/calibration/calibration_file.hpp"
 #include "veridyn/camera/rendering/virtual_camera.hpp"
 #include "veridyn/camera/tracking/pose_tables.hpp"

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <map>
 
-#include "apps/veridyn/console.hpp"
 #include "apps/veridyn/live/rig_car.hpp"
-#include "apps/veridyn/results/output_folder.hpp"
-#include "apps/veridyn/results/run_record.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
+#include "apps/veridyn/run/run_record.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/live/driver/guided_calibration.hpp"

@@ -5,8 +5,8 @@
 #include <chrono>
 #include <thread>
 
-#include "apps/veridyn/console.hpp"
 #include "apps/veridyn/live/served.hpp"
+#include "apps/veridyn/run/console.hpp"
 #include "veridyn/live/page/page_token.hpp"
 
 namespace veridyn::app {

@@ -1,5 +1,5 @@
 // veridyn serve, where the program was built without the page.
-#include "apps/veridyn/command.hpp"
+#include "apps/veridyn/run/command.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::app {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "apps/veridyn/work_progress.hpp"
+#include "apps/veridyn/run/work_progress.hpp"
 #include "veridyn/core/error.hpp"
 #ifdef VERIDYN_HAS_SOCKETS
 #include "veridyn/live/link/udp_socket.hpp"

@@ -7,10 +7,10 @@
 #include <map>
 #include <utility>
 
-#include "apps/veridyn/console.hpp"
 #include "apps/veridyn/results/analysis_results.hpp"
 #include "apps/veridyn/results/open_loop_results.hpp"
-#include "apps/veridyn/version.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/version.hpp"
 #include "veridyn/aircraft/identification/rows/flight_set.hpp"
 #include "veridyn/aircraft/model/jsbsim.hpp"
 #include "veridyn/estimation/judgement/subject_grades.hpp"

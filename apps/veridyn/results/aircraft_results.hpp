@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/veridyn/domains.hpp"
-#include "apps/veridyn/results/output_folder.hpp"
+#include "apps/veridyn/run/domains.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
 #include "veridyn/aircraft/aircraft_study.hpp"
 
 namespace veridyn::app {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "apps/veridyn/console.hpp"
+#include "apps/veridyn/run/console.hpp"
 
 namespace veridyn::app {
 

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "apps/veridyn/command.hpp"
-#include "apps/veridyn/results/summary.hpp"
+#include "apps/veridyn/run/command.hpp"
+#include "apps/veridyn/run/summary.hpp"
 #include "veridyn/estimation/result/analysis.hpp"
 
 namespace veridyn::app {

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <thread>
 
-#include "apps/veridyn/console.hpp"
-#include "apps/veridyn/launcher.hpp"
-#include "apps/veridyn/version.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/launcher.hpp"
+#include "apps/veridyn/run/version.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/batches/fingerprint.hpp"
 #include "veridyn/numerics/ranks/shared_work.hpp"

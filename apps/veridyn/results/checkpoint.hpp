@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "apps/veridyn/command.hpp"
-#include "apps/veridyn/domains.hpp"
+#include "apps/veridyn/run/command.hpp"
+#include "apps/veridyn/run/domains.hpp"
 #include "veridyn/numerics/batches/block_store.hpp"
 #include "veridyn/numerics/batches/value_log.hpp"
 

@@ -7,12 +7,12 @@
 #include <map>
 #include <optional>
 
-#include "apps/veridyn/console.hpp"
 #include "apps/veridyn/results/analysis_results.hpp"
 #include "apps/veridyn/results/open_loop_results.hpp"
 #include "apps/veridyn/results/profile_results.hpp"
 #include "apps/veridyn/results/study_tables.hpp"
-#include "apps/veridyn/version.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/version.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/estimation/judgement/subject_grades.hpp"

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "apps/veridyn/domains.hpp"
-#include "apps/veridyn/results/output_folder.hpp"
+#include "apps/veridyn/run/domains.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/vehicle/simulation_study.hpp"
 #include "veridyn/vehicle/track_drive.hpp"

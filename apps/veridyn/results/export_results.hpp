@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "apps/veridyn/domains.hpp"
-#include "apps/veridyn/results/output_folder.hpp"
+#include "apps/veridyn/run/domains.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
 #include "veridyn/estimation/result/estimate.hpp"
 
 namespace veridyn::app {

@@ -5,11 +5,11 @@
 
 #include <algorithm>
 
-#include "apps/veridyn/console.hpp"
 #include "apps/veridyn/results/analysis_results.hpp"
 #include "apps/veridyn/results/posterior_results.hpp"
 #include "apps/veridyn/results/profile_results.hpp"
-#include "apps/veridyn/version.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/version.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/io/tables/csv_text.hpp"

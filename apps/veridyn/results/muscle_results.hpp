@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "apps/veridyn/domains.hpp"
-#include "apps/veridyn/results/output_folder.hpp"
+#include "apps/veridyn/run/domains.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
 #include "veridyn/muscle/study/identify_muscles.hpp"
 
 namespace veridyn::app {

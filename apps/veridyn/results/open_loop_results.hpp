@@ -1,8 +1,8 @@
 #pragma once
 
-#include "apps/veridyn/console.hpp"
-#include "apps/veridyn/results/output_folder.hpp"
-#include "apps/veridyn/results/summary.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
+#include "apps/veridyn/run/summary.hpp"
 #include "veridyn/core/recording.hpp"
 #include "veridyn/estimation/open_loop/open_loop.hpp"
 

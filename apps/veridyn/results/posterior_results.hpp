@@ -1,8 +1,8 @@
 #pragma once
 
-#include "apps/veridyn/console.hpp"
-#include "apps/veridyn/results/output_folder.hpp"
-#include "apps/veridyn/results/summary.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
+#include "apps/veridyn/run/summary.hpp"
 #include "veridyn/estimation/uncertainty/posterior_sampling.hpp"
 
 namespace veridyn::app {

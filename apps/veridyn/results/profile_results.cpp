@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "apps/veridyn/console.hpp"
+#include "apps/veridyn/run/console.hpp"
 #include "veridyn/io/tables/csv_text.hpp"
 
 namespace veridyn::app {

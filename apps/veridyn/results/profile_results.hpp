@@ -2,9 +2,9 @@
 
 #include <span>
 
-#include "apps/veridyn/command.hpp"
-#include "apps/veridyn/results/output_folder.hpp"
-#include "apps/veridyn/results/summary.hpp"
+#include "apps/veridyn/run/command.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
+#include "apps/veridyn/run/summary.hpp"
 #include "veridyn/estimation/result/parameter.hpp"
 #include "veridyn/estimation/uncertainty/profile_likelihood.hpp"
 

@@ -11,11 +11,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "apps/veridyn/console.hpp"
 #include "apps/veridyn/results/checkpoint.hpp"
-#include "apps/veridyn/results/output_folder.hpp"
 #include "apps/veridyn/results/study_tables.hpp"
-#include "apps/veridyn/version.hpp"
+#include "apps/veridyn/run/console.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
+#include "apps/veridyn/run/version.hpp"
 #include "veridyn/io/results/indices_csv.hpp"
 #include "veridyn/report/document/html.hpp"
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/veridyn/domains.hpp"
-#include "apps/veridyn/results/summary.hpp"
+#include "apps/veridyn/run/domains.hpp"
+#include "apps/veridyn/run/summary.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/estimation/uncertainty/response_indices.hpp"
 #include "veridyn/report/response_report.hpp"

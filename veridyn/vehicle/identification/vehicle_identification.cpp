@@ -28,6 +28,8 @@ VehicleIdentification not_excited(const VehicleProblem& problem) {
   out.reason = fmt::format("there is nothing to identify from: {}", problem.segments.text);
   out.estimates.push_back(unexcited_estimate(problem, out.reason));
   out.checks.assign(problem.recording.begin(), problem.recording.end());
+  const std::vector<std::string> unexcited{"C_f", "C_r", "I_z"};
+  for (estimation::Evidence& row : not_excited_rows(unexcited)) out.checks.push_back(std::move(row));
   out.judgement = estimation::judge(out.checks);
   return out;
 }
@@ -124,8 +126,6 @@ VehicleIdentification identify_structure(const VehicleProblem& problem,
   out.reason = (out.interrupted ? "interrupted: " : "") + judgement.reason;
   out.checks = std::move(judgement.checks);
   out.judgement = std::move(judgement.judgement);
-  for (const estimation::Evidence& row : out.checks)
-    if (!row.passed()) out.warnings.push_back(row.text);
   if (out.verdict != estimation::GroupVerdict::kRejected)
     out.identified = estimated_parameters(problem.start, chosen->parameters);
   out.estimates = marked(std::move(out.estimates), problem.start, out.verdict);

@@ -250,7 +250,7 @@ TEST(DriveEvidence, AccountsForALeanToFivePercent) {
   }
 }
 
-// Limits are 0.04 s either way, with care, and 0.4 s late, failed; what three standard errors allow is within them.
+// Limits are 0.004 s either way, with care, and 0.02 s, failed; what three standard errors allow is within them.
 TEST(DriveEvidence, JudgesTheOrderInTimeByTheDelayThatTheModelFinds) {
   const Evidence row{.name = std::string(kOrderInTime),
                      .about = "steer",
@@ -269,10 +269,10 @@ TEST(DriveEvidence, JudgesTheOrderInTimeByTheDelayThatTheModelFinds) {
   EXPECT_THAT(in_time.text, HasSubstr("0.004 +- 0.001 s later than its model"));
   EXPECT_THAT(judged_by(-0.004, 0.001).text, HasSubstr("0.004 +- 0.001 s earlier than its model"));
   for (const auto& [value, sigma, outcome] :
-       {std::tuple{0.044, 0.001, Outcome::kCare}, std::tuple{0.042, 0.001, Outcome::kPassed},
-        std::tuple{-0.044, 0.001, Outcome::kCare}, std::tuple{-0.042, 0.001, Outcome::kPassed},
-        std::tuple{0.15, 0.05, Outcome::kPassed}, std::tuple{0.404, 0.001, Outcome::kFailed},
-        std::tuple{0.402, 0.001, Outcome::kCare}, std::tuple{-0.5, 0.001, Outcome::kCare}}) {
+       {std::tuple{0.008, 0.001, Outcome::kCare}, std::tuple{0.006, 0.001, Outcome::kPassed},
+        std::tuple{-0.008, 0.001, Outcome::kCare}, std::tuple{-0.006, 0.001, Outcome::kPassed},
+        std::tuple{0.15, 0.05, Outcome::kPassed}, std::tuple{0.024, 0.001, Outcome::kFailed},
+        std::tuple{0.022, 0.001, Outcome::kCare}, std::tuple{-0.024, 0.001, Outcome::kFailed}}) {
     const Evidence by_model = judged_by(value, sigma);
     EXPECT_EQ(by_model.outcome, outcome) << value << " +- " << sigma;
     EXPECT_EQ(by_model.advice.empty(), outcome == Outcome::kPassed) << value << " +- " << sigma;

@@ -110,6 +110,8 @@ TEST(VehicleJudgement, DriveThatDeterminesNoParameterOfTheVehicleIsNotExcited) {
   const VehicleJudgement found = c.judge();
   EXPECT_EQ(found.verdict, estimation::GroupVerdict::kNotExcited);
   EXPECT_EQ(found.reason, "not excited: the drive does not determine C_f, C_r");
+  EXPECT_EQ(found.judgement.parameters.grade, estimation::Grade::kNo);
+  EXPECT_EQ(found.judgement.prediction.grade, estimation::Grade::kNotJudged);
 }
 
 TEST(VehicleJudgement, ModelThatCannotBeSimulatedIsRejectedAndAMissingHoldOutIsSaid) {

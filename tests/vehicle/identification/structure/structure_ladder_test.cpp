@@ -65,7 +65,8 @@ TEST(StructureLadder, APlainBicycleStaysOne) {
   }
   EXPECT_EQ(ladder.chosen, 0U);
   EXPECT_EQ(ladder.reason, "structure: bicycle: none richer makes the drive likelier");
-  EXPECT_FALSE(ladder.steer_delay.has_value());  // the signals alone show it
+  ASSERT_TRUE(ladder.steer_delay.has_value());
+  EXPECT_NEAR(ladder.steer_delay->value, 0.0, 0.002);
   ASSERT_TRUE(ladder.fit.raw.usable()) << ladder.fit.raw.message;
   EXPECT_NEAR(value_of(ladder, DriveUnknown::kCf) / family_car().C_f, 1.0, 0.03);
   // A richer structure contains the simpler one: none is less likely beyond its prior.

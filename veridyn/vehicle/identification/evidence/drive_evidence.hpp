@@ -35,7 +35,8 @@ namespace veridyn::vehicle {
 inline constexpr std::string_view kOrderInTime = "order in time";
 
 /// The row of the order in time by the delay of the steering that the identified model finds when it is left free; any
-/// other row, or without a delay, as it is. What compares signals alone knows a body's lean only as a delay.
+/// other row, or without a delay, as it is. What compares signals alone takes a body's lean, or noise of slow steering,
+/// for a delay.
 [[nodiscard]] estimation::Evidence in_time_of_model(estimation::Evidence row, const estimation::Parameter* steer_delay);
 
 /// How late the yaw acceleration follows the steering, where the drive shows it.

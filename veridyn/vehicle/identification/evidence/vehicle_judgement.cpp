@@ -197,6 +197,28 @@ bool of_the_vehicle(const Parameter& p) {
 
 }  // namespace
 
+std::vector<Evidence> not_excited_rows(std::span<const std::string> unexcited) {
+  Evidence parameters{
+      .name = "excitation",
+      .about = "steer",
+      .outcome = Outcome::kFailed,
+      .value = 0.0,
+      .limit = 1.0,
+      .scale = "determined parameters",
+      .text = fmt::format("the drive does not determine {}", fmt::join(unexcited, ", ")),
+      .bears_on = Purpose::kParameters,
+      .advice = "drive with more steering: to and fro at 0.2 to 1 Hz, 1 to 3 m/s^2 of lateral acceleration"};
+  Evidence prediction{.name = "excitation",
+                      .about = "steer",
+                      .outcome = Outcome::kMissing,
+                      .value = 0.0,
+                      .limit = 1.0,
+                      .scale = "determined parameters",
+                      .text = "nothing was identified that could predict",
+                      .bears_on = Purpose::kPrediction};
+  return {std::move(parameters), std::move(prediction)};
+}
+
 AgreementChecks check_agreement(const VehicleProblem& problem, const VehicleFindings& findings) {
   AgreementChecks checks;
   // The regressions are of the bicycle.
@@ -237,8 +259,19 @@ VehicleJudgement judge_vehicle(const VehicleProblem& problem, const VehicleFindi
   for (Evidence& row : bound_rows(findings.chosen.parameters)) out.checks.push_back(std::move(row));
   out.checks.push_back(check_prediction(there, problem.options.min_holdout_r2));
   if (there != nullptr && here != nullptr) out.checks.push_back(check_residual_on_holdout(*there, *here));
+  std::vector<std::string> identified, unexcited;
+  for (const Parameter& p : findings.chosen.parameters) {
+    if (of_the_vehicle(p)) (p.status == ParameterStatus::kNotExcited ? unexcited : identified).push_back(p.name);
+  }
+  const bool excited = !identified.empty();
+  if (!excited)
+    for (Evidence& row : not_excited_rows(unexcited)) out.checks.push_back(std::move(row));
   out.judgement = estimation::judge(out.checks);
-  out.verdict = estimation::verdict_of(out.judgement);
+  out.verdict = excited ? estimation::verdict_of(out.judgement) : estimation::GroupVerdict::kNotExcited;
+  if (!excited) {
+    out.reason = fmt::format("not excited: the drive does not determine {}", fmt::join(unexcited, ", "));
+    return out;
+  }
 
   const std::string holdout =
       there != nullptr ? fmt::format(": {:.1f} % of the yaw rate's variance on the hold-out", percent_explained(*there))
@@ -251,20 +284,9 @@ VehicleJudgement judge_vehicle(const VehicleProblem& problem, const VehicleFindi
                      : fmt::format("rejected: {}", first);
     return out;
   }
-  std::vector<std::string> identified, unexcited;
-  for (const Parameter& p : findings.chosen.parameters) {
-    if (of_the_vehicle(p)) (p.status == ParameterStatus::kNotExcited ? unexcited : identified).push_back(p.name);
-  }
-  if (identified.empty()) {
-    out.verdict = estimation::GroupVerdict::kNotExcited;
-    out.reason = fmt::format("not excited: the drive does not determine {}", fmt::join(unexcited, ", "));
-    return out;
-  }
   out.reason =
       fmt::format("{} identified by {}{}", fmt::join(identified, ", "), to_string(findings.chosen.method), holdout);
   if (!unexcited.empty()) out.reason += fmt::format("; not excited: {}", fmt::join(unexcited, ", "));
-  const auto failed = std::ranges::count_if(out.checks, [](const Evidence& row) { return !row.passed(); });
-  if (failed > 0) out.reason += fmt::format("; {} of {} checks failed, see the warnings", failed, out.checks.size());
   return out;
 }
 

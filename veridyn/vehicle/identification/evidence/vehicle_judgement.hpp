@@ -45,6 +45,10 @@ struct AgreementChecks {
 /// The checks of an estimate against the others of the same drive.
 [[nodiscard]] AgreementChecks check_agreement(const VehicleProblem& problem, const VehicleFindings& findings);
 
+/// Of a drive that determines none of the vehicle's parameters, whose names are given: no parameters, and no prediction
+/// to judge.
+[[nodiscard]] std::vector<estimation::Evidence> not_excited_rows(std::span<const std::string> unexcited);
+
 /// The rows of a drive, the grades that follow and the verdict: effective where the parameters are no physical
 /// constants but predict the hold-out, not excited where no parameter of the vehicle is determined.
 [[nodiscard]] VehicleJudgement judge_vehicle(const VehicleProblem& problem, const VehicleFindings& findings);

@@ -98,17 +98,20 @@ VehicleProblem with_options(const VehicleProblem& problem, const VehicleIdentify
   return {problem.signals, problem.segments, problem.start, problem.signal_options, options, problem.recording};
 }
 
-/// Nothing for a bicycle, of which the signals alone show it, and where the search fails.
+/// How late the steering is: as estimated, or where the study does not estimate it, as it is where the model is left
+/// free to say so. Nothing where that search fails.
 std::optional<estimation::Parameter> steer_delay_of(const VehicleProblem& problem,
                                                     const EquationErrorEstimates* equation_error,
                                                     const OutputErrorResult& fit, Progress& progress) {
-  if (!has_roll(problem.options.model.structure) || !fit.raw.usable() || progress.interrupted()) return std::nullopt;
+  constexpr auto kDelay = static_cast<std::size_t>(DriveUnknown::kSteerDelay);
+  if (!fit.raw.usable() || progress.interrupted()) return std::nullopt;
+  if (problem.options.model.free[DriveUnknown::kSteerDelay]) return fit.raw.parameters[kDelay];
   VehicleIdentifyOptions options = problem.options;
   options.model.free[DriveUnknown::kSteerDelay] = true;
   const OutputErrorResult delayed = estimate_by_output_error(
       with_options(problem, options), equation_error, fit.raw.theta, fit.whitening, SearchEffort::kOnce, progress);
   if (!delayed.raw.usable()) return std::nullopt;
-  return delayed.raw.parameters[static_cast<std::size_t>(DriveUnknown::kSteerDelay)];
+  return delayed.raw.parameters[kDelay];
 }
 
 /// The options for a structure. Saturation has no relaxation length where the data did not ask for one.

@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "apps/veridyn/domains.hpp"
-#include "apps/veridyn/results/output_folder.hpp"
+#include "apps/veridyn/run/domains.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
 #include "veridyn/core/progress.hpp"
 
 namespace veridyn::app {

@@ -1,12 +1,12 @@
 // Which domain a study is of, and what each command does for it.
-#include "apps/veridyn/domains.hpp"
+#include "apps/veridyn/run/domains.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 
-#include "apps/veridyn/console.hpp"
+#include "apps/veridyn/run/console.hpp"
 #include "veridyn/core/enum_array.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"

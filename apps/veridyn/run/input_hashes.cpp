@@ -1,9 +1,9 @@
-#include "apps/veridyn/results/input_hashes.hpp"
+#include "apps/veridyn/run/input_hashes.hpp"
 
 #include <exception>
 #include <utility>
 
-#include "apps/veridyn/results/run_record.hpp"
+#include "apps/veridyn/run/run_record.hpp"
 
 namespace veridyn::app {
 

@@ -1,4 +1,4 @@
-#include "apps/veridyn/console.hpp"
+#include "apps/veridyn/run/console.hpp"
 
 #include <fmt/format.h>
 

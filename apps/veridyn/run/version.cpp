@@ -1,4 +1,4 @@
-#include "apps/veridyn/version.hpp"
+#include "apps/veridyn/run/version.hpp"
 
 namespace veridyn::app {
 

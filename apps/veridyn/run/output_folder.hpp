@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "apps/veridyn/results/input_hashes.hpp"
-#include "apps/veridyn/results/run_record.hpp"
-#include "apps/veridyn/results/summary.hpp"
+#include "apps/veridyn/run/input_hashes.hpp"
+#include "apps/veridyn/run/run_record.hpp"
+#include "apps/veridyn/run/summary.hpp"
 
 namespace veridyn::app {
 

@@ -1,4 +1,4 @@
-#include "apps/veridyn/results/output_folder.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -9,7 +9,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "apps/veridyn/console.hpp"
+#include "apps/veridyn/run/console.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 

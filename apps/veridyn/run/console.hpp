@@ -3,8 +3,8 @@
 #include <string>
 #include <string_view>
 
-#include "apps/veridyn/command.hpp"
-#include "apps/veridyn/results/summary.hpp"
+#include "apps/veridyn/run/command.hpp"
+#include "apps/veridyn/run/summary.hpp"
 #include "veridyn/core/progress.hpp"
 
 namespace veridyn::app {

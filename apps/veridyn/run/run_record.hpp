@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/veridyn/command.hpp"
+#include "apps/veridyn/run/command.hpp"
 
 namespace veridyn::app {
 

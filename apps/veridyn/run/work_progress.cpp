@@ -1,4 +1,4 @@
-#include "apps/veridyn/work_progress.hpp"
+#include "apps/veridyn/run/work_progress.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>

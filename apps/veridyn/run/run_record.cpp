@@ -1,5 +1,5 @@
 // run.json: what a run was made from and what it wrote.
-#include "apps/veridyn/results/run_record.hpp"
+#include "apps/veridyn/run/run_record.hpp"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "apps/veridyn/results/summary.hpp"
-#include "apps/veridyn/version.hpp"
+#include "apps/veridyn/run/summary.hpp"
+#include "apps/veridyn/run/version.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/index.hpp"

@@ -1,4 +1,4 @@
-#include "apps/veridyn/results/summary.hpp"
+#include "apps/veridyn/run/summary.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/veridyn/command.hpp"
-#include "apps/veridyn/results/run_record.hpp"
+#include "apps/veridyn/run/command.hpp"
+#include "apps/veridyn/run/run_record.hpp"
 #include "veridyn/core/study.hpp"
 
 namespace veridyn::app {

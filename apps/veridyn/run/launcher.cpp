@@ -1,4 +1,4 @@
-#include "apps/veridyn/launcher.hpp"
+#include "apps/veridyn/run/launcher.hpp"
 
 #include <fmt/format.h>
 #include <sched.h>
