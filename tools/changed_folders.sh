@@ -12,7 +12,7 @@ fi
 [ -n "$base" ] || base=$(git rev-list --max-parents=0 HEAD | tail -n 1)
 git diff --name-only --no-renames --diff-filter=d "$base" -- 'veridyn/*.[ch]pp' 'bench/reproduction/*.[ch]pp' 'apps/*.[ch]pp' | xargs -r -n 1 dirname | sort -u |
   while read -r folder; do
-    # A folder of headers alone is looked at where it is compiled: with its module.
-    while ! compgen -G "$folder/*.cpp" >/dev/null; do folder=$(dirname "$folder"); done
-    echo "$folder"
+    # A folder of headers alone is looked at where it is compiled: with its module. Headers above all modules have none.
+    while [ "$folder" != . ] && ! compgen -G "$folder/*.cpp" >/dev/null; do folder=$(dirname "$folder"); done
+    [ "$folder" = . ] || echo "$folder"
   done | sort -u
