@@ -282,6 +282,7 @@ std::vector<Compared> compare(const DriveMotion& m) {
   const auto add = [&](const char* text, InertialChannel y, const Values& x, double least,
                        std::vector<InertialChannel> under) {
     all.push_back({related(text, s[y], x, m.step, least), {y}, std::move(under)});
+    all.back().relation.channel = y;
   };
   if (there({kAccelX, kSpeed}))
     add("accel_x against the change of speed", kAccelX, change(s[kSpeed], m.step), 0.15, {kSpeed});
@@ -300,6 +301,7 @@ std::vector<Compared> compare(const DriveMotion& m) {
     for (double& v : over_ground) v = v > most ? kNaN : v;
     all.push_back(
         {related("speed against the change of position", s[kSpeed], over_ground, m.step, 0.5, true), {kSpeed}, {}});
+    all.back().relation.channel = kSpeed;
   }
   if (there({kSteer, kSpeed, kGyroZ})) {
     add("gyro_z against speed times steer", kGyroZ, product(s[kSpeed], s[kSteer]), 0.02, {kSteer});

@@ -41,6 +41,7 @@ struct DriveMotion {
 /// One signal against what others say that it should be, low-passed by 0.8 s.
 struct AxisRelation {
   std::string text;                           ///< "accel_x against the change of speed"
+  InertialChannel channel{};                  ///< the one signal
   double slope = 0.0, low = 0.0, high = 0.0;  ///< 1 where all is well; 95 % by leaving out blocks of 5 s
   double correlation = 0.0;
   double seconds = 0.0;  ///< of drive in which there is something to compare

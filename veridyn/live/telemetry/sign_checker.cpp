@@ -32,11 +32,13 @@ void SignChecker::add(const std::vector<recording::MotionSample>& samples) {
 
 SignVerdict SignChecker::check() const {
   struct Needed {
-    const char* relation;
+    recording::InertialChannel channel;
     const char* to_do;
     bool fits = false;
   };
-  std::vector<Needed> all = {{"accel_x", "accelerate and brake"}, {"accel_y", "drive bends"}, {"gyro_z", "turn"}};
+  std::vector<Needed> all = {{recording::InertialChannel::kAccelX, "accelerate and brake"},
+                             {recording::InertialChannel::kAccelY, "drive bends"},
+                             {recording::InertialChannel::kGyroZ, "turn"}};
   if (samples_.size() >= 2) {
     Recording recording = recording::to_recording(samples_);
     std::vector<double> speed;
@@ -52,7 +54,7 @@ SignVerdict SignChecker::check() const {
     }
     for (Needed& n : all) {
       for (const recording::AxisRelation& r : check.relations)
-        n.fits = n.fits || (r.text.starts_with(n.relation) && r.judged && r.fits);
+        n.fits = n.fits || (r.channel == n.channel && r.judged && r.fits);
     }
   }
   std::vector<std::string> missing;
