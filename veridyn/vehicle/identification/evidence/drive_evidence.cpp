@@ -288,13 +288,14 @@ Evidence in_time_of_model(Evidence row, const estimation::Parameter* steer_delay
   row.text =
       fmt::format("the identified vehicle answers the steering {:.3f} +- {:.3f} s {} than its model",
                   std::abs(steer_delay->value), steer_delay->sigma, steer_delay->value < 0.0 ? "earlier" : "later");
-  row.advice = row.passed() ? ""
-                            : fmt::format(
-                                  "measure how late {} is recorded, and give it: data.map takes a delay, "
-                                  "{} = {{ ..., delay = \"20 ms\" }}; or let it be estimated: "
-                                  "identify.estimate with \"steer_delay\"",
-                                  steer_delay->value < 0.0 ? "steer" : "yaw_rate",
-                                  steer_delay->value < 0.0 ? "steer" : "yaw_rate");
+  if (row.passed()) {
+    row.advice.clear();
+  } else {
+    row.advice = fmt::format(
+        "measure how late {0} is recorded, and give it: data.map takes a delay, {0} = {{ ..., delay = \"20 ms\" }}; or "
+        "let it be estimated: identify.estimate with \"steer_delay\"",
+        steer_delay->value < 0.0 ? "steer" : "yaw_rate");
+  }
   return row;
 }
 

@@ -208,14 +208,11 @@ std::vector<Evidence> not_excited_rows(std::span<const std::string> unexcited) {
       .text = fmt::format("the drive does not determine {}", fmt::join(unexcited, ", ")),
       .bears_on = Purpose::kParameters,
       .advice = "drive with more steering: to and fro at 0.2 to 1 Hz, 1 to 3 m/s^2 of lateral acceleration"};
-  Evidence prediction{.name = "excitation",
-                      .about = "steer",
-                      .outcome = Outcome::kMissing,
-                      .value = 0.0,
-                      .limit = 1.0,
-                      .scale = "determined parameters",
-                      .text = "nothing was identified that could predict",
-                      .bears_on = Purpose::kPrediction};
+  Evidence prediction = parameters;
+  prediction.outcome = Outcome::kMissing;
+  prediction.text = "nothing was identified that could predict";
+  prediction.bears_on = Purpose::kPrediction;
+  prediction.advice.clear();
   return {std::move(parameters), std::move(prediction)};
 }
 
