@@ -1,0 +1,47 @@
+#include "veridyn/estimation/judgement/check.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+namespace veridyn::estimation {
+namespace {
+
+TEST(Checks, AreInTheOrderOfTheirEnumeration) {
+  for (std::size_t i = 0; i < all_checks().size(); ++i)
+    EXPECT_EQ(static_cast<std::size_t>(all_checks()[i].check), i) << all_checks()[i].name;
+}
+
+TEST(Checks, HaveNamesOfTheirOwn) {
+  std::set<std::string_view> names;
+  for (const CheckInfo& info : all_checks()) {
+    EXPECT_TRUE(names.insert(info.name).second) << info.name << " stands twice";
+    EXPECT_EQ(check_named(info.name), info.check);
+  }
+  EXPECT_EQ(check_named("a check of the future"), Check::kUnknown);
+}
+
+TEST(RowOf, TakesItsOutcomeAndTheLimitThatDecidedFromTheTable) {
+  const Evidence fine = row_of(Check::kClippedSamples, "gyro", 0.001);
+  EXPECT_EQ(fine.outcome, Outcome::kPassed);
+  EXPECT_EQ(fine.limit, info_of(Check::kClippedSamples).tolerance.high);
+  const Evidence bad = row_of(Check::kClippedSamples, "gyro", 0.2);
+  EXPECT_EQ(bad.outcome, Outcome::kFailed);
+  EXPECT_EQ(bad.limit, info_of(Check::kClippedSamples).tolerance.highest);
+  const Evidence low = row_of(Check::kLateralAcceleration, "accel_y", 0.1);
+  EXPECT_EQ(low.outcome, Outcome::kFailed);
+  EXPECT_EQ(low.limit, info_of(Check::kLateralAcceleration).tolerance.lowest);
+  EXPECT_EQ(row_of(Check::kAirspeedScale, "airspeed", 1.05, 0.02).outcome, Outcome::kPassed)
+      << "1.05 is no more than three standard errors of 0.02 above 1.02";
+}
+
+TEST(Says, FillsThePhraseOfTheTableWithTheRowsNumbers) {
+  EXPECT_EQ(advice_of(row_of(Check::kHeldSamples, "gyro", 4.0)),
+            "give the recording with the sensor's own stamps, one a measurement");
+  EXPECT_EQ(advice_of(row_of(Check::kHeldSamples, "gyro", 1.0)), "") << "of a row that passed";
+}
+
+}  // namespace
+}  // namespace veridyn::estimation
