@@ -58,14 +58,15 @@ Evidence row_of(Check check, std::string about, double value, double sigma) {
 
 Evidence row_of(Check check, std::string about, Outcome outcome) {
   const CheckInfo& info = info_of(check);
-  return {.check = check,
-          .about = std::move(about),
-          .name = std::string(info.name),
-          .outcome = outcome,
-          .value = kNaN,
-          .limit = kNaN,
-          .scale = std::string(info.unit),
-          .bears_on = info.bears_on};
+  Evidence row{.check = check,
+               .about = std::move(about),
+               .outcome = outcome,
+               .value = kNaN,
+               .limit = kNaN,
+               .bears_on = info.bears_on};
+  row.name = std::string(info.name);
+  row.scale = std::string(info.unit);
+  return row;
 }
 
 }  // namespace veridyn::estimation
