@@ -6,6 +6,7 @@
 #include "apps/veridyn/run/console.hpp"
 #include "apps/veridyn/run/output_folder.hpp"
 #include "apps/veridyn/run/version.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/estimation/result/estimate_comparison.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/report/comparison_report.hpp"
@@ -84,7 +85,7 @@ int compare(const Arguments& arguments) {
   folder.write("comparison.json", summary.to_json());
   folder.write("report.html", report::to_html(report::comparison_report(comparison, estimates, program_name())));
   folder.publish({.command = "compare", .study_name = "compare", .study_toml = {}, .inputs = inputs}, options, summary);
-  for (const Evidence& row : comparison.evidence) print_line(options, "  " + row.text);
+  for (const Evidence& row : comparison.evidence) print_line(options, "  " + estimation::says(row));
   print_line(options, comparison.text);
   print_line(options, fmt::format("report: {}", (folder.path() / "report.html").string()));
   return kDone;

@@ -85,7 +85,7 @@ int reproduce(const Arguments& arguments, const std::string& domain, std::span<c
                                     {"published", row->finding},
                                     {"here", row->ours},
                                     {"passed", row->passed()}});
-    for (const Check& check : row->checks) {
+    for (const CheckOutcome& check : row->checks) {
       print_line(options, fmt::format("       {} {}", check.passed ? "+" : "-", check.text));
       json["checks"].push_back(Summary::object({{"passed", check.passed}, {"text", check.text}}));
     }

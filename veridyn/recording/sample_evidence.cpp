@@ -1,13 +1,12 @@
 #include "veridyn/recording/sample_evidence.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/numerics/resample.hpp"
 #include "veridyn/numerics/statistics.hpp"
 #include "veridyn/numerics/threads/parallel.hpp"
@@ -15,8 +14,12 @@
 namespace veridyn::recording {
 namespace {
 
+using estimation::Cause;
+using estimation::Check;
 using estimation::Evidence;
+using estimation::info_of;
 using estimation::Outcome;
+using estimation::row_of;
 
 constexpr std::size_t kFewestSamples = 100;
 /// A sensor that is moved does not show the same value for so long [s]; a control may.
@@ -25,17 +28,12 @@ constexpr double kControlRestsFor_s = 30.0;
 /// Samples that a held value has at least, and the share of all samples that are held equally long.
 constexpr std::size_t kHeld = 3;
 constexpr double kMostly = 0.8;
-/// Share of the samples at the end of the range from which a sensor is clipped.
-constexpr double kClippedShare = 0.003;
-/// Steps in a standard deviation below which a signal is lost in its resolution.
-constexpr double kFewestSteps = 2.0;
 
 /// A spike stands out of both its neighbours by so many times what samples around it do.
 constexpr double kSpike = 12.0;
 /// Less of the channel's range than this does no harm.
 constexpr double kSpikeOfRange = 0.05;
 constexpr std::size_t kFewestSpikes = 3;
-constexpr double kSpikeShare = 0.0005;
 
 /// Samples in a row with one value.
 struct Run {
@@ -80,15 +78,6 @@ std::size_t typical_length(const std::vector<Run>& runs) {
   return 1;
 }
 
-/// What is wrong with the samples of one channel, and how much.
-struct Flaw {
-  const char* name;
-  double value, limit;
-  const char* scale;
-  Outcome outcome;
-  std::string text, advice;
-};
-
 /// View of a channel and of what its kind is, with its runs.
 struct Sampled {
   const SampledChannel* which = nullptr;
@@ -118,7 +107,7 @@ bool others_move(const std::vector<Sampled>& all, const Sampled& still, double b
   return moving > resting;
 }
 
-std::optional<Flaw> stands_still(const Sampled& channel, const std::vector<Sampled>& all) {
+std::optional<Evidence> stands_still(const Sampled& channel, const std::vector<Sampled>& all) {
   const SampledChannel& which = *channel.which;
   if (which.rest == Rest::kNone) return std::nullopt;
   const Run& longest = *std::ranges::max_element(channel.runs, {}, &Run::samples);
@@ -128,17 +117,14 @@ std::optional<Flaw> stands_still(const Sampled& channel, const std::vector<Sampl
   // Exactly zero is what a simulated or decoupled motion may be.
   if (longest.value == 0.0) return std::nullopt;
   if (!others_move(all, channel, longest.begin, longest.end)) return std::nullopt;
-  return Flaw{"frozen samples",
-              longest.end - longest.begin,
-              limit,
-              "s",
-              Outcome::kFailed,
-              fmt::format("{} stands still from {:.1f} s to {:.1f} s while others move", which.channel, longest.begin,
-                          longest.end),
-              "leave that stretch out (data.from, data.to), or the channel"};
+  Evidence row = row_of(Check::kFrozenSamples, which.about, Outcome::kFailed);
+  row.cause = Cause::kFrozen;
+  row.value = longest.end - longest.begin;
+  row.limit = limit;
+  return std::move(row).with("channel", which.channel).with("begin", longest.begin).with("end", longest.end);
 }
 
-std::optional<Flaw> is_held(const Sampled& channel) {
+std::optional<Evidence> is_held(const Sampled& channel) {
   constexpr std::size_t kFewestRuns = 10;
   const auto& [which, recorded, rate_Hz, runs, samples, typical] = channel;
   if (typical < kHeld || runs.size() < kFewestRuns) return std::nullopt;
@@ -147,17 +133,12 @@ std::optional<Flaw> is_held(const Sampled& channel) {
     if (run.samples + 1 >= typical && run.samples <= typical + 1) alike += run.samples;
   if (!(static_cast<double>(alike) > kMostly * static_cast<double>(samples))) return std::nullopt;
   const double measured_Hz = rate_Hz / static_cast<double>(typical);
-  return Flaw{"held samples",
-              static_cast<double>(typical),
-              static_cast<double>(kHeld),
-              "samples a value",
-              Outcome::kCare,
-              fmt::format("{} is measured at {:.3g} Hz and held: {} samples in a row are one measurement",
-                          channel.which->channel, measured_Hz, typical),
-              "give the recording with the sensor's own stamps, one a measurement"};
+  Evidence row = row_of(Check::kHeldSamples, which->about, static_cast<double>(typical));
+  row.cause = Cause::kHeld;
+  return std::move(row).with("channel", which->channel).with("rate_Hz", measured_Hz);
 }
 
-std::optional<Flaw> is_clipped(const Sampled& channel) {
+std::optional<Evidence> is_clipped(const Sampled& channel) {
   const auto& [which, recorded, rate_Hz, runs, samples, typical] = channel;
   if (which->may_rest() || typical >= kHeld) return std::nullopt;
   const auto [low, high] = std::ranges::minmax(runs, {}, &Run::value);
@@ -172,15 +153,10 @@ std::optional<Flaw> is_clipped(const Sampled& channel) {
       end = value;
     }
   }
-  if (!(share > kClippedShare)) return std::nullopt;
-  return Flaw{"clipped samples",
-              share,
-              kClippedShare,
-              "share of the samples",
-              share > 0.05 ? Outcome::kFailed : Outcome::kCare,
-              fmt::format("{} stays at its extreme value {:.4g} for {:.1f} % of the samples: it is clipped there",
-                          channel.which->channel, end, 100.0 * share),
-              "use a sensor with a larger range, or gentler manoeuvres"};
+  Evidence row = row_of(Check::kClippedSamples, which->about, share);
+  if (row.passed()) return std::nullopt;
+  row.cause = Cause::kSaturation;
+  return std::move(row).with("channel", which->channel).with("end_of_range", end);
 }
 
 /// Between any two of every `stride`-th value; infinite when there is only one.
@@ -205,7 +181,7 @@ double smallest_step(const std::vector<Run>& runs, double enough) {
   return smallest_step_of(runs, 1);
 }
 
-std::optional<Flaw> is_coarse(const Sampled& channel) {
+std::optional<Evidence> is_coarse(const Sampled& channel) {
   const std::vector<Run>& runs = channel.runs;
   if (channel.which->may_rest()) return std::nullopt;
   double sum = 0.0, squares = 0.0;
@@ -215,17 +191,12 @@ std::optional<Flaw> is_coarse(const Sampled& channel) {
   }
   const auto n = static_cast<double>(runs.size());
   const double deviation = std::sqrt(std::max(0.0, squares / n - sum * sum / (n * n)));
-  const double step = smallest_step(runs, deviation / kFewestSteps);
-  if (!std::isfinite(step) || !(deviation < kFewestSteps * step)) return std::nullopt;
-  return Flaw{
-      "coarse samples",
-      deviation / step,
-      kFewestSteps,
-      "steps in a standard deviation",
-      Outcome::kCare,
-      fmt::format("{} comes in steps of {:.3g}, which is coarse for a signal of {:.3g} (one standard deviation)",
-                  channel.which->channel, step, deviation),
-      "log the channel with its full resolution"};
+  const double step = smallest_step(runs, deviation / info_of(Check::kCoarseSamples).tolerance.low);
+  if (!std::isfinite(step)) return std::nullopt;
+  Evidence row = row_of(Check::kCoarseSamples, channel.which->about, deviation / step);
+  if (row.passed()) return std::nullopt;
+  row.cause = Cause::kResolution;
+  return std::move(row).with("channel", channel.which->channel).with("step", step).with("deviation", deviation);
 }
 
 /// Indices of samples that stand alone: by more than `least` from the middle between their neighbours, which are near
@@ -251,7 +222,7 @@ std::vector<std::size_t> spikes_in(std::span<const double> x, double least) {
   return found;
 }
 
-std::optional<Flaw> has_spikes(const Sampled& sampled, std::span<const TimeSpan> spans) {
+std::optional<Evidence> has_spikes(const Sampled& sampled, std::span<const TimeSpan> spans) {
   if (sampled.typical >= kHeld) return std::nullopt;
   const auto [low, high] = std::ranges::minmax(sampled.runs, {}, &Run::value);
   const double of_range = kSpikeOfRange * (high.value - low.value);
@@ -269,15 +240,13 @@ std::optional<Flaw> has_spikes(const Sampled& sampled, std::span<const TimeSpan>
     for (const std::size_t i : spikes_in(x, least)) at.push_back(times[first + i]);
   }
   const double share = static_cast<double>(at.size()) / static_cast<double>(sampled.samples);
-  if (at.size() < kFewestSpikes || share < kSpikeShare) return std::nullopt;
-  return Flaw{"spikes",
-              share,
-              kSpikeShare,
-              "share of the samples",
-              Outcome::kCare,
-              fmt::format("{} samples of {} stand alone, far from both neighbours, the first at {:.2f} s", at.size(),
-                          sampled.which->channel, at.front()),
-              "replace them in the recording by what their neighbours say"};
+  Evidence row = row_of(Check::kSpikes, sampled.which->about, share);
+  if (at.size() < kFewestSpikes || row.passed()) return std::nullopt;
+  row.cause = Cause::kSpikes;
+  return std::move(row)
+      .with("channel", sampled.which->channel)
+      .with("samples", static_cast<double>(at.size()))
+      .with("first", at.front());
 }
 
 }  // namespace
@@ -296,36 +265,21 @@ std::vector<Evidence> sample_evidence(const Recording& recording, std::span<cons
   });
   std::erase_if(found, [](const Sampled& sampled) { return sampled.samples < kFewestSamples; });
   const std::vector<Sampled>& all = found;
-  std::vector<std::array<std::optional<Flaw>, 5>> flaws(all.size());
+  std::vector<std::array<std::optional<Evidence>, 5>> flaws(all.size());
   numerics::parallel_for(all.size(), threads, [&](std::size_t i) {
     const Sampled& sampled = all[i];
     flaws[i] = {stands_still(sampled, all), is_held(sampled), is_clipped(sampled), is_coarse(sampled),
                 has_spikes(sampled, spans)};
   });
   std::vector<Evidence> rows;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    for (const std::optional<Flaw>& flaw : flaws[i]) {
-      if (!flaw) continue;
-      rows.push_back({.name = flaw->name,
-                      .about = all[i].which->about,
-                      .outcome = flaw->outcome,
-                      .value = flaw->value,
-                      .limit = flaw->limit,
-                      .scale = flaw->scale,
-                      .text = flaw->text,
-                      .bears_on = estimation::kAllPurposes,
-                      .advice = flaw->advice});
-    }
+  for (std::array<std::optional<Evidence>, 5>& of_channel : flaws)
+    for (std::optional<Evidence>& flaw : of_channel)
+      if (flaw) rows.push_back(std::move(*flaw));
+  if (rows.empty() && !all.empty()) {
+    Evidence row = row_of(Check::kSamples, "recording", Outcome::kPassed);
+    row.value = 0.0;
+    rows.push_back(std::move(row).with("channels", static_cast<double>(all.size())));
   }
-  if (rows.empty() && !all.empty())
-    rows.push_back(
-        {.name = "samples",
-         .about = "recording",
-         .value = 0.0,
-         .limit = 0.0,
-         .scale = "channels",
-         .text = fmt::format("none of {} channels stands still, is held, clipped or coarse, or has spikes", all.size()),
-         .bears_on = estimation::kAllPurposes});
   return rows;
 }
 

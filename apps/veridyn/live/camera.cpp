@@ -64,7 +64,7 @@ int calibrate(const Arguments& arguments) {
                                                      : Distortion::kAuto;
   const CalibrationPoints points = read_calibration_points(file);
   const Calibration c = fit_camera(points, distortion);
-  const std::vector<Check> checks = calibration_checks(points, c);
+  const std::vector<CheckOutcome> checks = calibration_checks(points, c);
   const std::uint64_t seed = common.seed.value_or(kSeed);
   std::optional<HeldOut> held_out;
   if (points.points.size() >= 16) held_out = hold_out_half(points, distortion, seed);
@@ -79,7 +79,7 @@ int calibrate(const Arguments& arguments) {
                                      {"rms_image_px", c.rms_image},
                                      {"systematic_image_px", c.systematic_image},
                                      {"rms_held_out_m", held_out ? held_out->rms_held_out : kNaN}});
-  for (const Check& check : checks)
+  for (const CheckOutcome& check : checks)
     summary["checks"].push_back(Summary::object({{"passed", check.passed}, {"text", check.text}}));
   folder.publish(record_of("camera calibrate", options, seed, {file}), common, summary);
   print_line(common,
@@ -89,7 +89,7 @@ int calibrate(const Arguments& arguments) {
     print_line(common,
                fmt::format("fitted on {} of them, the other {} are {:.2f} mm RMS off, {:.1f} mm at most",
                            held_out->fitted, held_out->held_out, 1e3 * held_out->rms_held_out, 1e3 * held_out->worst));
-  for (const Check& check : checks)
+  for (const CheckOutcome& check : checks)
     if (!check.passed) print_line(common, "warning: " + check.text);
   print_line(common, fmt::format("wrote calibration.toml, residuals.csv, report.html in {}", folder.path().string()));
   return kDone;

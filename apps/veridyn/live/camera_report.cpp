@@ -77,10 +77,10 @@ Table parameter_table(const Calibration& c) {
 }  // namespace
 
 Document calibration_report(const CalibrationPoints& points, const Calibration& c,
-                            const std::optional<camera::HeldOut>& held_out, const std::vector<Check>& checks,
+                            const std::optional<camera::HeldOut>& held_out, const std::vector<CheckOutcome>& checks,
                             const std::string& generator) {
   Document document{.title = "Calibration of a camera", .subtitle = points.source};
-  const bool good = std::all_of(checks.begin(), checks.end(), [](const Check& check) { return check.passed; });
+  const bool good = std::all_of(checks.begin(), checks.end(), [](const CheckOutcome& check) { return check.passed; });
   document.verdict = {
       .level = good ? Level::kGood : Level::kCaution,
       .headline = fmt::format(
@@ -90,7 +90,7 @@ Document calibration_report(const CalibrationPoints& points, const Calibration& 
   Table table;
   table.columns = {{.name = "check", .align = Align::kLeft}, {.name = "found", .align = Align::kLeft}};
   table.sortable = false;
-  for (const Check& check : checks)
+  for (const CheckOutcome& check : checks)
     table.rows.push_back(
         {.cells = {status_cell(check.passed ? Status::kGood : Status::kCaution), text_cell(check.text)}});
   section.blocks.push_back(std::move(table));

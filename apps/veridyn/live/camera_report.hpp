@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "veridyn/camera/calibration/fit_camera.hpp"
-#include "veridyn/core/check.hpp"
+#include "veridyn/core/check_outcome.hpp"
 #include "veridyn/report/document/document.hpp"
 
 namespace veridyn::app {
@@ -15,6 +15,7 @@ namespace veridyn::app {
 [[nodiscard]] report::Document calibration_report(const camera::CalibrationPoints& points,
                                                   const camera::Calibration& calibration,
                                                   const std::optional<camera::HeldOut>& held_out,
-                                                  const std::vector<Check>& checks, const std::string& generator);
+                                                  const std::vector<CheckOutcome>& checks,
+                                                  const std::string& generator);
 
 }  // namespace veridyn::app

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "apps/veridyn/run/console.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 
 namespace veridyn::app {
 
@@ -36,10 +37,11 @@ void print_judgement(const CommonOptions& options, const estimation::Estimate& e
   print_line(options, estimation::sentence_of(estimate));
   for (const estimation::Evidence& row : estimate.evidence) {
     if (row.outcome == estimation::Outcome::kPassed || row.bears_on.empty()) continue;
-    const bool named = row.about.empty() || row.text.find(row.about) != std::string::npos;
-    print_line(options, fmt::format("  {:<12} {}{}", estimation::to_string(row.outcome), named ? "" : row.about + ": ",
-                                    row.text));
-    if (!row.advice.empty()) print_line(options, fmt::format("  {:<12} {}", "", row.advice));
+    const std::string seen = estimation::says(row), advice = estimation::advice_of(row);
+    const bool named = row.about.empty() || seen.find(row.about) != std::string::npos;
+    print_line(options,
+               fmt::format("  {:<12} {}{}", estimation::to_string(row.outcome), named ? "" : row.about + ": ", seen));
+    if (!advice.empty()) print_line(options, fmt::format("  {:<12} {}", "", advice));
   }
 }
 

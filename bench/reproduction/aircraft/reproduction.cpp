@@ -63,7 +63,7 @@ class Expectations {
  public:
   Expectations(const StudyTable& expect, const Reproduction& result) : expect_(expect), result_(result) {}
 
-  std::vector<Check> check() {
+  std::vector<CheckOutcome> check() {
     if (result_.batch) check_batch();
     if (result_.tracking) check_tracking();
     return std::move(checks_);
@@ -315,7 +315,7 @@ class Expectations {
 
   const StudyTable& expect_;
   const Reproduction& result_;
-  std::vector<Check> checks_;
+  std::vector<CheckOutcome> checks_;
 };
 
 }  // namespace

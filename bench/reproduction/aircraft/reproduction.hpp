@@ -7,7 +7,7 @@
 
 #include "bench/reproduction/aircraft/batch_experiment.hpp"
 #include "bench/reproduction/aircraft/tracking_experiment.hpp"
-#include "veridyn/core/check.hpp"
+#include "veridyn/core/check_outcome.hpp"
 
 namespace veridyn::aircraft {
 
@@ -56,7 +56,7 @@ struct Reproduction {
   ExperimentOptions options;
   std::optional<BatchExperiment> batch;
   std::optional<TrackingExperiment> tracking;
-  std::vector<Check> checks;
+  std::vector<CheckOutcome> checks;
   bool interrupted = false;
 
   [[nodiscard]] bool passed() const;

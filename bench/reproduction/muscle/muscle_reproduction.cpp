@@ -156,14 +156,14 @@ std::string number(double value) {
   return value >= 1000.0 ? fmt::format("{:.0f}", value) : fmt::format("{:.2g}", value);
 }
 
-Check check_quantity(const Expectation& e, const std::vector<ComparedOutcome>& cases) {
+CheckOutcome check_quantity(const Expectation& e, const std::vector<ComparedOutcome>& cases) {
   const auto statistic = [&](const ComparedOutcome& c) {
     return e.largest ? c.largest(e.quantity) : c.median(e.quantity);
   };
   const double ours = statistic(cases[e.of]);
-  Check check{.passed = std::isfinite(ours) && ours < e.below,
-              .text = fmt::format("{} of {}, {}: {}", e.largest ? "largest" : "median", to_string(e.quantity),
-                                  cases[e.of].setting.name, number(ours))};
+  CheckOutcome check{.passed = std::isfinite(ours) && ours < e.below,
+                     .text = fmt::format("{} of {}, {}: {}", e.largest ? "largest" : "median", to_string(e.quantity),
+                                         cases[e.of].setting.name, number(ours))};
   if (std::isfinite(e.below)) check.text += fmt::format(" (below {})", number(e.below));
   if (e.than) {
     const double other = statistic(cases[*e.than]);
@@ -176,7 +176,7 @@ Check check_quantity(const Expectation& e, const std::vector<ComparedOutcome>& c
   return check;
 }
 
-Check check_coverage(const Expectation& e, const std::vector<ComparedOutcome>& cases) {
+CheckOutcome check_coverage(const Expectation& e, const std::vector<ComparedOutcome>& cases) {
   int identified = 0, covered = 0;
   std::string names;
   for (const std::size_t c : e.covered) {
@@ -247,7 +247,7 @@ double ComparedOutcome::largest(ComparedQuantity quantity) const {
 }
 
 bool MuscleReproduction::passed() const {
-  return std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.passed; });
+  return std::all_of(checks.begin(), checks.end(), [](const CheckOutcome& c) { return c.passed; });
 }
 
 MuscleReproduction reproduce_muscle(const Study& source, Progress& progress) {

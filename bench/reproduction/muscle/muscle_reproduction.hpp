@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "veridyn/core/check.hpp"
+#include "veridyn/core/check_outcome.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/muscle/study/task_study.hpp"
@@ -84,7 +84,7 @@ struct MuscleReproduction {
   std::string conditions;
   TaskStudy study;
   std::vector<ComparedOutcome> cases;
-  std::vector<Check> checks;
+  std::vector<CheckOutcome> checks;
   bool interrupted = false;
 
   /// All checks.

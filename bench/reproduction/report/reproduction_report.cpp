@@ -18,7 +18,7 @@ Section section_of(const ReproducedRow& row) {
   Table checks{.title = "What must be seen",
                .columns = {{.name = ""}, {.name = "seen", .align = Align::kLeft}},
                .sortable = false};
-  for (const Check& check : row.checks) {
+  for (const CheckOutcome& check : row.checks) {
     const Status status = check.passed ? Status::kGood : Status::kBad;
     checks.rows.push_back({.cells = {status_cell(status), text_cell(check.text)}, .status = status});
   }
@@ -30,7 +30,7 @@ Section section_of(const ReproducedRow& row) {
 }  // namespace
 
 bool ReproducedRow::passed() const {
-  return std::all_of(checks.begin(), checks.end(), [](const Check& check) { return check.passed; });
+  return std::all_of(checks.begin(), checks.end(), [](const CheckOutcome& check) { return check.passed; });
 }
 
 Document reproduction_report(const std::string& domain, std::span<const ReproducedRow> rows,
@@ -50,9 +50,9 @@ Document reproduction_report(const std::string& domain, std::span<const Reproduc
     // Many checks: their number, and those that failed.
     constexpr std::size_t kMostTexts = 6;
     const bool many = r.checks.size() > kMostTexts;
-    const auto good = std::count_if(r.checks.begin(), r.checks.end(), [](const Check& c) { return c.passed; });
+    const auto good = std::count_if(r.checks.begin(), r.checks.end(), [](const CheckOutcome& c) { return c.passed; });
     std::string seen = many ? fmt::format("{} of {} checks passed", good, r.checks.size()) : "";
-    for (const Check& check : r.checks) {
+    for (const CheckOutcome& check : r.checks) {
       if (!many || !check.passed) seen += (seen.empty() ? "" : "; ") + check.text;
     }
     summary.rows.push_back({.cells = {status_cell(status), text_cell(r.title), text_cell(seen)}, .status = status});

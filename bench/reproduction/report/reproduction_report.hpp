@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "veridyn/core/check.hpp"
+#include "veridyn/core/check_outcome.hpp"
 #include "veridyn/report/document/document.hpp"
 
 namespace veridyn::report {
@@ -12,10 +12,10 @@ namespace veridyn::report {
 /// A published result alongside ours, whatever the domain.
 struct ReproducedRow {
   std::string title = {};
-  std::string finding = {};        ///< what was published, in words
-  std::string ours = {};           ///< how it was done here, in a sentence
-  std::vector<Check> checks = {};  ///< what must be seen
-  std::vector<Block> blocks = {};  ///< numbers side by side, pictures
+  std::string finding = {};               ///< what was published, in words
+  std::string ours = {};                  ///< how it was done here, in a sentence
+  std::vector<CheckOutcome> checks = {};  ///< what must be seen
+  std::vector<Block> blocks = {};         ///< numbers side by side, pictures
 
   [[nodiscard]] bool passed() const;
 };

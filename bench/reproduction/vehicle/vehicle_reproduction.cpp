@@ -88,8 +88,8 @@ PublishedNumber read_number(const StudyTable& table, const ScaleAnalysis& analys
   return n;
 }
 
-std::vector<Check> check_groups(const StudyTable& expect, const ScaleAnalysis& a) {
-  std::vector<Check> checks;
+std::vector<CheckOutcome> check_groups(const StudyTable& expect, const ScaleAnalysis& a) {
+  std::vector<CheckOutcome> checks;
   if (!expect.has("mismatch")) return checks;
   const StudyTable table = expect.table("mismatch");
   if (!a.given_report) expect.fail("mismatch", "needs a [scale.model]");
@@ -117,7 +117,7 @@ std::vector<Check> check_groups(const StudyTable& expect, const ScaleAnalysis& a
 }  // namespace
 
 bool VehicleReproduction::passed() const {
-  return std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.passed; });
+  return std::all_of(checks.begin(), checks.end(), [](const CheckOutcome& c) { return c.passed; });
 }
 
 VehicleReproduction reproduce_vehicle(const StudyTable& root, Progress& progress) {
@@ -135,7 +135,7 @@ VehicleReproduction reproduce_vehicle(const StudyTable& root, Progress& progress
     r.checks.push_back({n.passed(), fmt::format("{}, {} at {:g} s: published {}, ours {:.8g} {}", n.run, n.quantity,
                                                 n.time, n.printed, n.ours, n.unit)});
   }
-  const std::vector<Check> groups = check_groups(expect, r.analysis);
+  const std::vector<CheckOutcome> groups = check_groups(expect, r.analysis);
   r.checks.insert(r.checks.end(), groups.begin(), groups.end());
   if (expect.has("gravity")) {
     const SimilarityReport& report = r.analysis.judged();

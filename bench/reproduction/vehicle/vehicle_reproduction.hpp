@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "veridyn/core/check.hpp"
+#include "veridyn/core/check_outcome.hpp"
 #include "veridyn/vehicle/scale_study.hpp"
 
 namespace veridyn::vehicle {
@@ -44,7 +44,7 @@ struct VehicleReproduction {
   ScaleStudy study;
   ScaleAnalysis analysis;
   std::vector<PublishedNumber> numbers;
-  std::vector<Check> checks;
+  std::vector<CheckOutcome> checks;
 
   /// All checks.
   [[nodiscard]] bool passed() const;

@@ -34,7 +34,7 @@ std::vector<Pair> neighbours(const CalibrationPoints& points) {
   return pairs;
 }
 
-Check check_place(const CalibrationPoints& points, const Calibration& c) {
+CheckOutcome check_place(const CalibrationPoints& points, const Calibration& c) {
   const NeighbourCorrelation n = neighbour_correlation(points, c.residuals);
   if (!n.tested) return {true, "dependence of the residuals on the place: too few points to test"};
   if (!n.significant())
@@ -47,7 +47,7 @@ Check check_place(const CalibrationPoints& points, const Calibration& c) {
                       n.correlation, c.sigma_image, c.systematic_image)};
 }
 
-Check check_outliers(const CalibrationPoints& points, const Calibration& c) {
+CheckOutcome check_outliers(const CalibrationPoints& points, const Calibration& c) {
   const std::vector<std::size_t> off = outlying_points(c.residuals);
   if (off.empty()) return {true, "no point is far off the others"};
   std::string text;
@@ -112,27 +112,29 @@ std::vector<std::size_t> outlying_points(std::span<const CalibrationResidual> re
   return off;
 }
 
-std::vector<Check> calibration_checks(const CalibrationPoints& points, const Calibration& c) {
-  std::vector<Check> checks{check_place(points, c), check_outliers(points, c)};
+std::vector<CheckOutcome> calibration_checks(const CalibrationPoints& points, const Calibration& c) {
+  std::vector<CheckOutcome> checks{check_place(points, c), check_outliers(points, c)};
   const Eigen::Matrix2d J = c.camera.J_image_track(c.camera.track_centre());
-  checks.push_back(J.determinant() < 0.0
-                       ? Check{true, "the track is seen from above"}
-                       : Check{false,
-                               "the track is seen as in a mirror: are x and y swapped, or does x or y of the track or "
-                               "of the image grow the other way?"});
+  checks.push_back(
+      J.determinant() < 0.0
+          ? CheckOutcome{true, "the track is seen from above"}
+          : CheckOutcome{false,
+                         "the track is seen as in a mirror: are x and y swapped, or does x or y of the track or "
+                         "of the image grow the other way?"});
   const double scale = std::sqrt(std::abs(J.determinant()));
   constexpr double kLeast = 2.0, kMost = 20000.0;
   checks.push_back(
       scale > kLeast && scale < kMost
-          ? Check{true, fmt::format("scale {:.1f} px/m", scale)}
-          : Check{false, fmt::format("scale {:.3g} px/m is outside {:g} to {:g}: is the track in metres (write "
-                                     "world_x[mm] for millimetres) and the image in pixels?",
-                                     scale, kLeast, kMost)});
-  checks.push_back(std::isfinite(c.sigma_image)
-                       ? Check{true, fmt::format("{} points for {} parameters", c.points, c.distorted ? 12 : 8)}
-                       : Check{false, fmt::format("{} points are fitted exactly, so the error of the map is unknown: "
-                                                  "give more points",
-                                                  c.points)});
+          ? CheckOutcome{true, fmt::format("scale {:.1f} px/m", scale)}
+          : CheckOutcome{false, fmt::format("scale {:.3g} px/m is outside {:g} to {:g}: is the track in metres (write "
+                                            "world_x[mm] for millimetres) and the image in pixels?",
+                                            scale, kLeast, kMost)});
+  checks.push_back(
+      std::isfinite(c.sigma_image)
+          ? CheckOutcome{true, fmt::format("{} points for {} parameters", c.points, c.distorted ? 12 : 8)}
+          : CheckOutcome{false, fmt::format("{} points are fitted exactly, so the error of the map is unknown: "
+                                            "give more points",
+                                            c.points)});
   if (!c.converged) checks.push_back({false, "the fit did not come to rest"});
   return checks;
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "veridyn/camera/calibration/fit_camera.hpp"
-#include "veridyn/core/check.hpp"
+#include "veridyn/core/check_outcome.hpp"
 
 namespace veridyn::camera {
 
@@ -33,6 +33,7 @@ struct NeighbourCorrelation {
 /// - the track is seen from above (x and y are not swapped, on neither side),
 /// - the scale is that of metres and pixels,
 /// - there are more equations than parameters, and the fit came to rest.
-[[nodiscard]] std::vector<Check> calibration_checks(const CalibrationPoints& points, const Calibration& calibration);
+[[nodiscard]] std::vector<CheckOutcome> calibration_checks(const CalibrationPoints& points,
+                                                           const Calibration& calibration);
 
 }  // namespace veridyn::camera

@@ -23,6 +23,13 @@ enum class Check : std::uint16_t {
 /// Who is checked; a heading of docs/judgement.md.
 enum class CheckedOf { kRecording, kFlight, kCoefficient, kDrive, kVehicle, kLimb, kRegression, kTracking, kAny };
 
+/// In their order.
+inline constexpr std::array<Cause, kCauses> kAllCauses = [] {
+  std::array<Cause, kCauses> all{};
+  for (std::size_t i = 0; i < kCauses; ++i) all[i] = static_cast<Cause>(i);
+  return all;
+}();
+
 /// Where the limits of a check come from.
 struct LimitSource {
   enum class Kind {
@@ -94,6 +101,10 @@ struct CheckInfo {
 /// By its name; `Check::kUnknown` for one that this version does not have.
 [[nodiscard]] Check check_named(std::string_view name);
 
+/// "frozen samples"; of a row.
+[[nodiscard]] std::string_view name_of(const Evidence& row);
+/// Of its value and limit: "s", "p", "reading over truth".
+[[nodiscard]] std::string_view unit_of(const Evidence& row);
 /// What a row has seen, in English: the sentence of its check with the row's numbers.
 [[nodiscard]] std::string says(const Evidence& row);
 /// What to do where it did not pass; empty where nothing is to be done.

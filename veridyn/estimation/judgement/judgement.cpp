@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "veridyn/estimation/judgement/check.hpp"
+
 namespace veridyn::estimation {
 namespace {
 
@@ -50,7 +52,7 @@ PurposeGrade grade_for(Purpose purpose, std::span<const Evidence> rows) {
   result.grade = grade_of(worst);
   if (result.grade == Grade::kYes) return result;
   for (const Evidence& row : rows) {
-    if (row.bears_on.contains(purpose) && row.outcome == worst) result.decided_by.push_back(row.text);
+    if (row.bears_on.contains(purpose) && row.outcome == worst) result.decided_by.push_back(says(row));
   }
   return result;
 }

@@ -80,6 +80,14 @@ const Figure* Evidence::figure(std::string_view key) const {
   return found == figures.end() ? nullptr : &*found;
 }
 
+std::string_view name_of(const Evidence& row) {
+  return row.check == Check::kUnknown ? std::string_view(row.name) : to_string(row.check);
+}
+
+std::string_view unit_of(const Evidence& row) {
+  return row.check == Check::kUnknown ? std::string_view(row.scale) : info_of(row.check).unit;
+}
+
 std::string says(const Evidence& row) {
   if (!row.text.empty()) return row.text;
   return first_that_fits(info_of(row.check).says, row);

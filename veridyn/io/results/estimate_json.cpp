@@ -10,15 +10,18 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/io/results/json_text.hpp"
 
 namespace veridyn::io {
 namespace {
 
+using estimation::Cause;
 using estimation::Estimate;
 using estimation::Evidence;
 using estimation::Grade;
 using estimation::Judgement;
+using estimation::kAllCauses;
 using estimation::Outcome;
 using estimation::Parameter;
 using estimation::ParameterStatus;
@@ -80,15 +83,25 @@ ordered_json evidence_of(const Evidence& row) {
   ordered_json purposes = ordered_json::array();
   for (const Purpose purpose : estimation::kPurposes)
     if (row.bears_on.contains(purpose)) purposes.push_back(std::string(estimation::to_string(purpose)));
-  return {{"name", row.name},
+  ordered_json figures = ordered_json::object();
+  for (const estimation::Figure& figure : row.figures) {
+    if (const double* value = std::get_if<double>(&figure.value))
+      figures[figure.key] = number(*value);
+    else
+      figures[figure.key] = std::get<std::string>(figure.value);
+  }
+  return {{"check", estimation::name_of(row)},
           {"about", row.about},
+          {"cause", estimation::to_string(row.cause)},
           {"outcome", std::string(estimation::to_string(row.outcome))},
           {"value", number(row.value)},
+          {"sigma", number(row.sigma)},
           {"limit", number(row.limit)},
-          {"scale", row.scale},
-          {"text", row.text},
+          {"unit", estimation::unit_of(row)},
+          {"figures", std::move(figures)},
+          {"text", estimation::says(row)},
           {"bears_on", std::move(purposes)},
-          {"advice", row.advice}};
+          {"advice", estimation::advice_of(row)}};
 }
 
 /// The value of an enumeration by its word.
@@ -128,23 +141,38 @@ Judgement read_grades(const ordered_json& root, const std::string& file) {
   return judgement;
 }
 
+/// Numbers and names of a row.
+std::vector<estimation::Figure> read_figures(const ordered_json& figures, const std::string& place) {
+  if (!figures.is_object()) throw InputError(place, "is not an object");
+  std::vector<estimation::Figure> read;
+  for (const auto& [key, value] : figures.items()) {
+    if (value.is_string())
+      read.push_back({key, value.get<std::string>()});
+    else
+      read.push_back({key, read_number(value, fmt::format("{}.{}", place, key))});
+  }
+  return read;
+}
+
 std::vector<Evidence> read_evidence(const ordered_json& root, const std::string& file) {
   std::vector<Evidence> rows;
   if (!root.contains("evidence")) return rows;
   if (!root["evidence"].is_array()) throw InputError(file, "'evidence' is not an array");
   for (const ordered_json& row : root["evidence"]) {
     const std::string place = fmt::format("{}: evidence[{}]", file, rows.size());
-    Evidence e{.name = read_text(row, "name", place),
+    // Files of versions before 0.9 have neither causes nor figures, and call a check "name".
+    const bool older = row.is_object() && !row.contains("check");
+    Evidence e{.check = estimation::check_named(read_text(row, older ? "name" : "check", place)),
                .about = read_text(row, "about", place),
+               .cause = older ? Cause::kNone : read_word(read_text(row, "cause", place), kAllCauses, place + ".cause"),
                .outcome = read_word(read_text(row, "outcome", place),
                                     std::array{Outcome::kPassed, Outcome::kNotVerified, Outcome::kCare,
                                                Outcome::kMissing, Outcome::kFailed},
                                     place + ".outcome"),
                .value = read_number(require(row, "value", place), place + ".value"),
-               .limit = read_number(require(row, "limit", place), place + ".limit"),
-               .scale = read_text(row, "scale", place),
-               .text = read_text(row, "text", place),
-               .advice = read_text(row, "advice", place)};
+               .sigma = older ? 0.0 : read_number(require(row, "sigma", place), place + ".sigma"),
+               .limit = read_number(require(row, "limit", place), place + ".limit")};
+    if (!older) e.figures = read_figures(require(row, "figures", place), place + ".figures");
     for (const std::string& purpose : read_texts(require(row, "bears_on", place), place + ".bears_on"))
       e.bears_on = e.bears_on | read_word(purpose, estimation::kPurposes, place + ".bears_on");
     rows.push_back(std::move(e));

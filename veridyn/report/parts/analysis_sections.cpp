@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/report/document/number_format.hpp"
 #include "veridyn/report/parts/estimate_tables.hpp"
 
@@ -161,9 +162,10 @@ Verdict verdict_of(const estimation::Estimate& estimate) {
   std::vector<std::string> advice;
   for (std::size_t i = 0; i < std::min(reasons.size(), kMostLines); ++i) {
     const estimation::Evidence* row = reasons[i];
-    const bool named = row->about.empty() || row->text.find(row->about) != std::string::npos;
-    verdict.lines.push_back(named ? row->text : fmt::format("{}: {}", row->about, row->text));
-    if (!row->advice.empty() && std::ranges::find(advice, row->advice) == advice.end()) advice.push_back(row->advice);
+    const std::string seen = estimation::says(*row), to_do = estimation::advice_of(*row);
+    const bool named = row->about.empty() || seen.find(row->about) != std::string::npos;
+    verdict.lines.push_back(named ? seen : fmt::format("{}: {}", row->about, seen));
+    if (!to_do.empty() && std::ranges::find(advice, to_do) == advice.end()) advice.push_back(to_do);
   }
   if (reasons.size() > kMostLines)
     verdict.lines.push_back(fmt::format("and {} more, in \"What was checked\"", reasons.size() - kMostLines));
@@ -192,8 +194,9 @@ Section evidence_section(const estimation::Estimate& estimate) {
       if (row.bears_on.contains(purpose))
         purposes += fmt::format("{}{}", purposes.empty() ? "" : ", ", estimation::to_string(purpose));
     table.rows.push_back(
-        {.cells = {text_cell(row.about), text_cell(row.name), outcome_cell(row), number_cell(row.value),
-                   number_cell(row.limit), text_cell(row.scale), text_cell(row.text), text_cell(purposes)}});
+        {.cells = {text_cell(row.about), text_cell(std::string(estimation::name_of(row))), outcome_cell(row),
+                   number_cell(row.value), number_cell(row.limit), text_cell(std::string(estimation::unit_of(row))),
+                   text_cell(estimation::says(row)), text_cell(purposes)}});
   }
   section.blocks.emplace_back(std::move(table));
   return section;
