@@ -10,7 +10,7 @@
 #include "veridyn/io/log_formats.hpp"
 #include "veridyn/io/read.hpp"
 #include "veridyn/io/tables/csv.hpp"
-#include "veridyn/recording/drive_axis_check.hpp"
+#include "veridyn/recording/consistency.hpp"
 #include "veridyn/recording/ros_topics.hpp"
 #include "veridyn/recording/study_data.hpp"
 #include "veridyn/vehicle/identification/signals/drive_log.hpp"
@@ -61,44 +61,49 @@ std::string mapping_section(const recording::MappedRecording& mapped, bool vehic
 
 /// Signs, axes and units of a drive by what its channels say of each other.
 std::string axis_section(const recording::MappedRecording& mapped, Summary& summary) {
-  const recording::DriveAxisCheck check =
-      recording::check_drive_axes(recording::drive_motion(mapped.recording), mapped.origins);
-  if (check.relations.empty()) return {};
-  std::string text = fmt::format("\nsigns and units:\n  {:<38} {:>7} {:>20} {:>12} {:>6}\n", "", "slope", "95 %",
-                                 "correlation", "[s]");
+  const recording::DriveMotion motion = recording::drive_motion(mapped.recording);
+  const recording::Consistency found = recording::check_consistency(motion);
+  if (found.relations.empty()) return {};
+  std::string text = fmt::format("\nsigns and units:\n  {:<52} {:>18} {:>12} {:>6}\n", "reading over what others imply",
+                                 "ratio", "correlation", "[s]");
   Summary json = Summary::object();
   json["relations"] = Summary::array();
-  for (const recording::AxisRelation& r : check.relations) {
-    text += r.seconds > 0.0 && std::isfinite(r.low)
-                ? fmt::format("  {:<38} {:>7.3g} {:>20} {:>12.2f} {:>6.0f}{}\n", r.text, r.slope,
-                              fmt::format("{:.3g} to {:.3g}", r.low, r.high), r.correlation, r.seconds,
-                              r.fits ? "  fits" : "")
-                : fmt::format("  {:<38} nothing to compare\n", r.text);
-    json["relations"].push_back(Summary::object({{"relation", r.text},
-                                                 {"slope", r.slope},
+  for (const recording::ChannelRelation& r : found.relations) {
+    const std::string pair = fmt::format("{}: {}", motion.names[r.channel], r.against);
+    text += r.moved() ? fmt::format("  {:<52} {:>18} {:>12.2f} {:>6.0f}{}\n", pair,
+                                    fmt::format("{:.3g} to {:.3g}", r.low, r.high), r.correlation, r.seconds,
+                                    r.fits() ? "  fits" : "")
+                      : fmt::format("  {:<52} too little of it to compare\n", pair);
+    json["relations"].push_back(Summary::object({{"channel", motion.names[r.channel]},
+                                                 {"against", r.against},
+                                                 {"low", r.low},
+                                                 {"high", r.high},
                                                  {"correlation", r.correlation},
+                                                 {"lag", r.lag_s},
                                                  {"seconds", r.seconds},
-                                                 {"fits", r.fits}}));
+                                                 {"moved", r.moved()},
+                                                 {"fits", r.fits()}}));
   }
   json["faults"] = Summary::array();
-  const auto describe = [&](const std::vector<recording::DriveFault>& faults, const char* begin) {
-    for (const recording::DriveFault& f : faults) {
-      text += fmt::format("  {} {} (correlation {:.2f})\n", begin, f.text, f.correlation);
-      for (const std::string& line : f.lines)
-        text += fmt::format("      mend it in [{}]: {}\n", line.starts_with("frame") ? "data" : "data.map", line);
-      Summary one = Summary::object({{"fault", f.text}, {"correlation", f.correlation}});
-      one["mend"] = f.lines;
-      one["sure"] = check.or_else.empty();
+  for (std::size_t i = 0; i < found.explanations.size(); ++i) {
+    const char* begin = found.is_sure() ? "wrong:" : i == 0 ? "either:" : "or:";
+    for (const recording::ChannelFault& f : found.explanations[i]) {
+      const std::vector<std::string> lines = correction_of(f, motion, mapped.origins);
+      text += fmt::format("  {} {}\n", begin, f.says(motion));
+      const char* table = f.cause == estimation::Cause::kFrame ? "data" : "data.map";
+      for (const std::string& line : lines) text += fmt::format("      correct it in [{}]: {}\n", table, line);
+      Summary one = Summary::object({{"fault", f.says(motion)},
+                                     {"cause", estimation::to_string(f.cause)},
+                                     {"factor", f.factor},
+                                     {"sure", found.is_sure()}});
+      one["correction"] = lines;
       json["faults"].push_back(std::move(one));
     }
-  };
-  describe(check.faults, check.or_else.empty() ? "wrong:" : "either:");
-  for (const auto& faults : check.or_else) describe(faults, "or:");
-  for (const std::string& note : check.notes) text += fmt::format("  note: {}\n", note);
-  const auto any = [&](auto what) { return std::any_of(check.relations.begin(), check.relations.end(), what); };
-  const bool fits = any([](const auto&r) { return r.fits; }),
-             misfits = any([](const auto&r) { return r.judged && !r.fits; });
-  if (check.faults.empty() && fits && !misfits) text += "  nothing contradicts the channels' names and units\n";
+  }
+  if (found.is_off() && found.explanations.empty())
+    text += "  no unit, sign, axis or scale of up to three channels explains what does not fit\n";
+  const bool fits = std::ranges::any_of(found.relations, [](const auto& r) { return r.fits(); });
+  if (!found.is_off() && fits) text += "  nothing contradicts the channels' names and units\n";
   summary["signs_and_units"] = std::move(json);
   return text;
 }

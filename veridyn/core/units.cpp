@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <map>
 #include <vector>
 
@@ -223,6 +225,24 @@ Unit parse_unit(std::string_view text) {
   // A temperature in a compound unit (W/degC) is a difference: its zero does not matter.
   if (factors > 1 || sign < 0) unit.offset = 0.0;
   return unit;
+}
+
+std::vector<Unit> units_like(const Unit& like) {
+  // The common names of what has several, and compounds, before the names of the table.
+  static const std::vector<Unit> all = [] {
+    std::vector<Unit> units;
+    for (const char* name : {"km/h", "ft/s", "deg/s", "ft/s^2", "g"}) units.push_back(parse_unit(name));
+    for (const auto& [name, unit] : known_units()) units.push_back({unit.dimension, unit.scale, unit.offset, name});
+    return units;
+  }();
+  std::vector<Unit> found{like.si()};
+  for (const Unit& unit : all) {
+    const auto same_size = [&](const Unit& other) {
+      return std::abs(unit.scale / other.scale - 1.0) < 1e-9 && unit.offset == other.offset;
+    };
+    if (unit.same_dimension(like) && std::ranges::none_of(found, same_size)) found.push_back(unit);
+  }
+  return found;
 }
 
 Unit parse_unit_like(std::string_view text, const Unit& expected) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace veridyn {
 
@@ -33,6 +34,10 @@ struct Unit {
 /// after each "/" up to the next is divided by.
 /// @throws InputError naming the unknown word, with the nearest known unit.
 [[nodiscard]] Unit parse_unit(std::string_view text);
+
+/// Units of the dimension of `like` in which people record, the SI unit first and each size once: "m/s", "km/h", "kt",
+/// "mph", "ft/s".
+[[nodiscard]] std::vector<Unit> units_like(const Unit& like);
 
 /// As `parse_unit`, and checks that the unit is of the expected dimension.
 /// @throws InputError "unit 'm' is a length [m], expected [kg]"

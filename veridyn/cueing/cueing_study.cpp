@@ -12,7 +12,7 @@
 #include "veridyn/cueing/washout/driver_settings.hpp"
 #include "veridyn/cueing/washout/lap_foresight.hpp"
 #include "veridyn/cueing/washout/shared_channels.hpp"
-#include "veridyn/recording/drive_axis_check.hpp"
+#include "veridyn/recording/consistency.hpp"
 #include "veridyn/recording/motion_recording.hpp"
 #include "veridyn/vehicle/identification/signals/drive_log.hpp"
 #include "veridyn/vehicle/simulation/trajectory_motion.hpp"
@@ -66,11 +66,20 @@ DrivenMotion recorded(const StudyTable& data, const recording::MotionOptions& op
   DrivenMotion drive{.name = log.inputs.empty() ? "drive" : log.inputs.front().filename().string(),
                      .inputs = log.inputs};
   const recording::RecordedMotion motion = recording::motion_samples(log.mapped.recording, options);
-  for (const recording::DriveFault& f :
-       recording::check_drive_axes(recording::drive_motion(log.mapped.recording), log.mapped.origins).faults) {
-    drive.notes.push_back(
-        fmt::format("wrong: {} (correlation {:.2f}); {}", f.text, f.correlation,
-                    f.lines.empty() ? "" : "mend it by " + fmt::format("{}", fmt::join(f.lines, "; "))));
+  const recording::DriveMotion channels = recording::drive_motion(log.mapped.recording);
+  const recording::Consistency found = recording::check_consistency(channels);
+  for (std::size_t i = 0; i < found.explanations.size(); ++i) {
+    for (const recording::ChannelFault& f : found.explanations[i]) {
+      // A leaning body and a road across are felt as they are.
+      if (f.cause == estimation::Cause::kMissingTerm) continue;
+      const std::vector<std::string> lines = correction_of(f, channels, log.mapped.origins);
+      drive.notes.push_back(fmt::format(
+          "{}: {}{}",
+          found.is_sure() ? "wrong"
+          : i == 0        ? "either"
+                          : "or",
+          f.says(channels), lines.empty() ? "" : fmt::format("; correct it by {}", fmt::join(lines, "; "))));
+    }
   }
   for (const auto* notes : {&log.mapped.notes, &motion.notes})
     drive.notes.insert(drive.notes.end(), notes->begin(), notes->end());

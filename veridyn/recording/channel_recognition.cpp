@@ -12,6 +12,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/rank.hpp"
 #include "veridyn/core/text.hpp"
+#include "veridyn/recording/gravity.hpp"
 
 namespace veridyn::recording {
 namespace {
@@ -92,9 +93,9 @@ UnitGuess unit_by_numbers(const Channel& channel, const StandardChannel& target)
     return {"?", fmt::format("{}: rad/s or deg/s?", range)};
   }
   if (target.name == "accel_z") {
-    const auto near = [&](double gravity) { return std::abs(std::abs(spread.middle) - gravity) < 0.06 * gravity; };
-    for (const auto& [unit, gravity] : {std::pair("m/s^2", kGravity), std::pair("g", 1.0), std::pair("ft/s^2", 32.174)})
-      if (near(gravity)) return {unit, fmt::format("its median of {:.4g} is gravity", spread.middle)};
+    const VerticalAcceleration up = vertical_acceleration(spread.middle, parse_unit(target.unit));
+    if (up.holds == VerticalAcceleration::Holds::kGravity)
+      return {up.unit.empty() ? target.unit : up.unit, fmt::format("its median of {:.4g} is gravity", spread.middle)};
   }
   if (target.unit == "m/s^2") return {"?", fmt::format("{}: m/s^2 or g?", range)};
   if (target.unit == "m/s") return {"?", fmt::format("{}: m/s, km/h or kt?", range)};

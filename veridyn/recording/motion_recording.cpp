@@ -12,6 +12,7 @@
 #include "veridyn/numerics/rotation.hpp"
 #include "veridyn/numerics/statistics.hpp"
 #include "veridyn/recording/channel_map.hpp"
+#include "veridyn/recording/gravity.hpp"
 
 namespace veridyn::recording {
 namespace {
@@ -59,45 +60,35 @@ struct GravityDecision {
   std::string note = {};  ///< what was taken for granted
 };
 
-/// Decides what the accelerations hold.
-GravityDecision holds_gravity(const Recording& recording, const std::vector<std::array<double, 3>>& a, GravityIn given,
-                              bool has_z) {
-  const auto refuse = [&](const std::string& what) { throw InputError(recording.source, what); };
+/// Decides what the accelerations hold. @param up upward accelerations in the recording's frame
+GravityDecision holds_gravity(const Recording& recording, std::span<const double> up, GravityIn given, bool has_z) {
   if (!has_z) {
     return {.in = true,
             .note =
                 "accel_z is not recorded: 1 g is taken for it; accel_x and accel_y are taken for an "
                 "accelerometer's, gravity in"};
   }
-  std::vector<double> size, up;
-  for (const auto& v : a) {
-    size.push_back(std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
-    up.push_back(v[2]);
-  }
-  const double middle = numerics::median(size), along = numerics::median(up);
-  const double up_sign = recording.frame == Frame::kFrd ? -1.0 : 1.0;
   if (given == GravityIn::kNo) return {.in = false};
-  if (middle > 1.6 * kGravity && middle < 2.4 * kGravity && std::abs(along) > 1.5 * kGravity)
-    refuse(fmt::format("accel_x, accel_y, accel_z are {:.2f} g long in the median: gravity seems to be in them twice",
-                       middle / kGravity));
-  const bool about_one_g = std::abs(along) > 0.7 * kGravity && std::abs(along) < 1.3 * kGravity;
-  if (about_one_g && along * up_sign < 0.0)
+  const bool frd = recording.frame == Frame::kFrd;
+  const VerticalAcceleration found = vertical_acceleration(up, parse_unit("m/s^2"));
+  const std::string seen = fmt::format("accel_z is {:+.2f} m/s^2 in the median", found.median);
+  using Holds = VerticalAcceleration::Holds;
+  const auto refuse = [&](const std::string& what) {
+    throw InputError(recording.source, fmt::format("{}{}", seen, what));
+  };
+  if (found.holds == Holds::kTwice) refuse(": gravity seems to be in it twice");
+  if (!found.unit.empty() && given != GravityIn::kYes)
+    refuse(fmt::format(": it seems to be in {}; give its unit in [data.map]", found.unit));
+  if (found.is_reversed(frd ? -1.0 : 1.0))
     refuse(
-        fmt::format("accel_z is {:+.2f} m/s^2 in the median; an accelerometer that rests shows {:+.2f} in frame {}: "
-                    "set `frame`, or turn its sign in [data.map]",
-                    along, up_sign * kGravity, recording.frame == Frame::kFrd ? "frd" : "flu"));
-  if (about_one_g || given == GravityIn::kYes) return {.in = true};
-  if (std::abs(along) > 0.9 && std::abs(along) < 1.1)
-    refuse(
-        fmt::format("accel_z is {:+.2f} m/s^2 in the median: it seems to be in g; give its unit in [data.map]", along));
-  if (std::abs(along) < 0.3 * kGravity) {
+        fmt::format("; an accelerometer that rests shows {:+.2f} in frame {}: set `frame`, or turn its sign in "
+                    "[data.map]",
+                    frd ? -kGravity : kGravity, frd ? "frd" : "flu"));
+  if (found.holds == Holds::kGravity || given == GravityIn::kYes) return {.in = true};
+  if (found.holds == Holds::kNothing)
     return {.in = false,
-            .note = fmt::format("accel_z is {:+.2f} m/s^2 in the median: accelerations are taken to be without "
-                                "gravity, and it is put in",
-                                along)};
-  }
-  refuse(fmt::format("accel_z is {:+.2f} m/s^2 in the median, neither 1 g nor none; say `gravity = \"in\"` or \"out\"",
-                     along));
+            .note = fmt::format("{}: accelerations are taken to be without gravity, and it is put in", seen)};
+  refuse(", neither 1 g nor none; say `gravity = \"in\"` or \"out\"");
   return {};
 }
 
@@ -144,7 +135,8 @@ RecordedMotion motion_samples(const Recording& recording, const MotionOptions& o
   const Eigen::Vector3d at_rest = force_at_rest(recording.frame);
   std::vector<std::array<double, 3>> a(at.size());
   for (std::size_t k = 0; k < at.size(); ++k) a[k] = {(*x)[k], (*y)[k], z ? (*z)[k] : at_rest.z()};
-  const auto [gravity, gravity_note] = holds_gravity(recording, a, options.gravity, z.has_value());
+  const auto [gravity, gravity_note] = holds_gravity(
+      recording, z ? std::span<const double>(*z) : std::span<const double>(), options.gravity, z.has_value());
   if (!gravity_note.empty()) motion.notes.push_back(gravity_note);
   const bool attitude = angles[0].has_value() || angles[1].has_value();
   for (std::size_t k = 0; k < at.size(); ++k) {

@@ -12,6 +12,7 @@
 #include "veridyn/core/text.hpp"
 #include "veridyn/numerics/rotation.hpp"
 #include "veridyn/numerics/statistics.hpp"
+#include "veridyn/recording/gravity.hpp"
 #include "veridyn/recording/ros_topics.hpp"
 
 namespace veridyn::recording {
@@ -131,14 +132,15 @@ class MotionFinder {
     const RosTopic& topic = found.front();
     const Eigen::Matrix3d R = rotation(topic.frame, topic.name);
     std::optional<RosVector> force = vector(topic, ".linear_acceleration", R);
-    const double up = force ? numerics::median(force->value[2]) : kNaN;
-    if (!(std::abs(up - kGravity) < 0.4 * kGravity)) {
+    const VerticalAcceleration up = vertical_acceleration(
+        force ? std::span<const double>(force->value[2]) : std::span<const double>(), parse_unit("m/s^2"));
+    if (up.holds != VerticalAcceleration::Holds::kGravity || !up.unit.empty() || up.is_reversed(1.0)) {
       if (force)
         motion_.notes.push_back(
             fmt::format("{} is left out: its upward acceleration has a median of {:.3g} m/s^2. Its axes are not those "
                         "of REP 103 (x "
                         "forward, y left, z up), or gravity was taken off; map it in [data.map]",
-                        topic.name, up));
+                        topic.name, up.median));
       return;
     }
     motion_.specific_force = std::move(force);

@@ -41,9 +41,10 @@ Check check_named(std::string_view name) {
 
 std::string_view to_string(Cause cause) {
   static constexpr std::array<std::string_view, kCauses> kNames{
-      "none",    "unit",       "scale",  "sign",         "axis",       "swap",       "gravity", "delay",        "zero",
-      "place",   "lag",        "frozen", "held",         "saturation", "resolution", "spikes",  "stamps",       "noise",
-      "missing", "excitation", "length", "missing term", "collinear",  "subject",    "bound",   "other subject"};
+      "none",       "unit",         "scale",     "sign",    "axis",  "frame",        "swap",
+      "gravity",    "delay",        "zero",      "place",   "lag",   "frozen",       "held",
+      "saturation", "resolution",   "spikes",    "stamps",  "noise", "missing",      "excitation",
+      "length",     "missing term", "collinear", "subject", "bound", "other subject"};
   return kNames[static_cast<std::size_t>(cause)];
 }
 

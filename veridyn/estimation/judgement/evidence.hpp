@@ -67,8 +67,9 @@ enum class Cause {
   kUnit,         ///< a channel in another unit than was said
   kScale,        ///< a gain that is no known unit's
   kSign,         ///< reversed
-  kAxis,         ///< channels of one sensor taken for each other, or a frame that is turned
-  kSwap,         ///< two sensors taken for each other
+  kAxis,         ///< channels taken for each other
+  kFrame,        ///< axes of another frame than was said
+  kSwap,         ///< another motion than that of its name
   kGravity,      ///< gravity in or out of the specific force
   kDelay,        ///< late or early
   kZero,         ///< a constant added

@@ -5,13 +5,20 @@
 
 #include <algorithm>
 
-#include "veridyn/recording/drive_axis_check.hpp"
+#include "veridyn/recording/consistency.hpp"
 #include "veridyn/recording/motion_recording.hpp"
 
 namespace veridyn::live {
 namespace {
 
 constexpr double kLongest = 120.0;  // [s]
+/// An operator waits: half the time that a recording's check needs.
+constexpr double kBand_Hz = 1.0;
+
+/// Moves as it should and by about as much: a wrong sign, axis or unit is not that near.
+bool agrees(const recording::ChannelRelation& r) {
+  return r.moved() && !r.unrelated() && r.low > r.tolerance.lowest && r.high < r.tolerance.highest;
+}
 
 }  // namespace
 
@@ -45,16 +52,18 @@ SignVerdict SignChecker::check() const {
     for (const recording::MotionSample& sample : samples_) speed.push_back(sample.speed);
     if (samples_.front().speed_from != recording::Origin::kAbsent)
       recording.add(make_channel("speed", "m/s", recording.find("accel_x")->time, std::move(speed)));
-    const recording::DriveAxisCheck check = recording::check_drive_axes(recording::drive_motion(recording));
-    if (!check.faults.empty()) {
-      std::vector<std::string> faults;
-      for (const recording::DriveFault& f : check.faults)
-        faults.push_back(fmt::format("{} (correlation {:.2f})", f.text, f.correlation));
-      return {SignVerdict::Kind::kWrong, fmt::format("{}", fmt::join(faults, "; "))};
+    const recording::DriveMotion motion = recording::drive_motion(recording);
+    const recording::Consistency found = check_consistency(motion, {.band_Hz = kBand_Hz});
+    std::vector<std::string> faults;
+    for (const std::vector<recording::ChannelFault>& together : found.explanations) {
+      for (const recording::ChannelFault& f : together)
+        if (f.cause != estimation::Cause::kMissingTerm) faults.push_back(f.says(motion));
     }
+    if (!faults.empty())
+      return {SignVerdict::Kind::kWrong, fmt::format("{}", fmt::join(faults, found.is_sure() ? "; " : ", or "))};
     for (Needed& n : all) {
-      for (const recording::AxisRelation& r : check.relations)
-        n.fits = n.fits || (r.channel == n.channel && r.judged && r.fits);
+      for (const recording::ChannelRelation& r : found.relations)
+        n.fits = n.fits || (r.channel == n.channel && r.power[n.channel] == 1 && agrees(r));
     }
   }
   std::vector<std::string> missing;

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <vector>
+
+#include "veridyn/recording/consistency.hpp"
+
+namespace veridyn::recording {
+
+/// The relations that the channels of a drive allow (see check_consistency); what the recording lacks is left out.
+[[nodiscard]] std::vector<ChannelRelation> drive_relations(const DriveMotion& motion,
+                                                           const ConsistencyOptions& options);
+
+}  // namespace veridyn::recording
