@@ -72,7 +72,9 @@ std::string axis_section(const recording::MappedRecording& mapped, Summary& summ
     const std::string pair = fmt::format("{}: {}", motion.names[r.channel], r.against);
     text += r.moved() ? fmt::format("  {:<52} {:>18} {:>12.2f} {:>6.0f}{}\n", pair,
                                     fmt::format("{:.3g} to {:.3g}", r.low, r.high), r.correlation, r.seconds,
-                                    r.fits() ? "  fits" : "")
+                                    r.fits()                                      ? "  fits"
+                                    : r.outcome() == estimation::Outcome::kPassed ? "  cannot tell"
+                                                                                  : "  is off")
                       : fmt::format("  {:<52} too little of it to compare\n", pair);
     json["relations"].push_back(Summary::object({{"channel", motion.names[r.channel]},
                                                  {"against", r.against},
@@ -89,7 +91,8 @@ std::string axis_section(const recording::MappedRecording& mapped, Summary& summ
     const char* begin = found.is_sure() ? "wrong:" : i == 0 ? "either:" : "or:";
     for (const recording::ChannelFault& f : found.explanations[i]) {
       const std::vector<std::string> lines = correction_of(f, motion, mapped.origins);
-      text += fmt::format("  {} {}\n", begin, f.says(motion));
+      // What may be motion is no fault for sure.
+      text += fmt::format("  {} {}\n", f.cause == estimation::Cause::kMissingTerm ? "note:" : begin, f.says(motion));
       const char* table = f.cause == estimation::Cause::kFrame ? "data" : "data.map";
       for (const std::string& line : lines) text += fmt::format("      correct it in [{}]: {}\n", table, line);
       Summary one = Summary::object({{"fault", f.says(motion)},

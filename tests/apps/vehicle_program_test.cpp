@@ -323,7 +323,7 @@ TEST_F(VehicleProgram, InspectSaysWhichUnitIsWrongAndItsLineMendsIt) {
   ASSERT_EQ(wrong.exit_code, 0) << wrong.text;
   EXPECT_THAT(wrong.text, HasSubstr("speed is in km/h, not m/s"));
   const std::string line = "speed = { channel = \"speed\", scale = 0.277778 }";
-  EXPECT_THAT(wrong.text, HasSubstr("mend it in [data.map]: " + line));
+  EXPECT_THAT(wrong.text, HasSubstr("correct it in [data.map]: " + line));
   EXPECT_THAT(run("inspect " + study).text, HasSubstr("speed is in km/h"));
   const Outcome mended =
       run("inspect " + file("mended.toml", "[data]\nfile = \"kmh.csv\"\n[data.map]\n" + line + "\n"));

@@ -23,10 +23,8 @@ using enum InertialChannel;
 using Factors = PerInertialChannel<double>;
 
 constexpr std::size_t kMostFaults = 3;  // looked for together
-/// Ratios of steering gears from racing karts to trucks, and those that most cars have.
-constexpr double kLeastRatio = 3.0, kMostRatio = 40.0, kLeastUsualRatio = 11.0, kMostUsualRatio = 20.0;
-/// A body that leans on its springs or on a road across shows so much more than it turns.
-constexpr double kMostByLean = 1.5;
+/// Ratios of steering gears that most cars have.
+constexpr double kLeastUsualRatio = 11.0, kMostUsualRatio = 20.0;
 
 /// A fault that may be, how unlikely it is besides others (a wrong unit or sign counts 1), and the factors that it has.
 struct Suspect {
@@ -121,12 +119,13 @@ class Explainer {
         ChannelFault wheel{Cause::kUnit, {kSteer}, 1.0, unit == 1.0 ? "rad" : "deg"};
         wheel.hand_wheel = true;
         suspects_.push_back({wheel, unit == 1.0 ? 1.0 : 1.05, kLeastUsualRatio * unit, kMostUsualRatio * unit});
-        suspects_.push_back({wheel, 1.2, kLeastRatio * unit, kMostRatio * unit});
-        suspects_.push_back({wheel, 2.2, -kMostRatio * unit, -kLeastRatio * unit});
+        suspects_.push_back({wheel, 1.2, kLeastSteeringRatio * unit, kMostSteeringRatio * unit});
+        suspects_.push_back({wheel, 2.2, -kMostSteeringRatio * unit, -kLeastSteeringRatio * unit});
       }
     }
-    if (m_.has(kAccelY) && !m_.gravity_removed)
-      suspects_.push_back({{Cause::kMissingTerm, {kAccelY}}, 1.3, 1.0, kMostByLean});
+    // A body that leans, a road across and a vehicle that slides show more or less than it turns.
+    const estimation::Tolerance& lateral = estimation::info_of(Check::kLateralAcceleration).tolerance;
+    if (m_.has(kAccelY)) suspects_.push_back({{Cause::kMissingTerm, {kAccelY}}, 1.3, lateral.lowest, lateral.highest});
     constexpr double kScale = 1.6, kAnotherMotion = 2.5;
     for (const InertialChannel c : enumerators<InertialChannel, kInertialChannels>()) {
       // Of an angle a scale that is no unit's is no fault that sensors have; nor is that of one coordinate.
@@ -223,15 +222,19 @@ class Explainer {
       seen = product(seen, {sign, sign});
       factor = {std::max(factor.low, may.low), std::min(factor.high, may.high)};
       const double width = (seen.high - seen.low) / std::abs(seen.high + seen.low);
-      if (width < sharpest) sharpest = width, measured = seen;
+      if (recording::is_off(r) && width < sharpest) sharpest = width, measured = seen;
       if (!(factor.low <= factor.high)) return;
     }
+    // What is off says what the factor is; it must suit the others.
+    const double found_factor = 0.5 * (measured.low + measured.high);
+    if (free != nullptr && !free->fault.hand_wheel && !(found_factor >= factor.low && found_factor <= factor.high))
+      return;
     if (cost < best_ - 1e-9) found_.clear();
     best_ = std::min(best_, cost);
     std::vector<ChannelFault> faults;
     for (const Suspect* s : chosen_) {
       faults.push_back(s->fault);
-      if (s == free) faults.back().factor = std::clamp(0.5 * (measured.low + measured.high), factor.low, factor.high);
+      if (s == free) faults.back().factor = std::clamp(found_factor, factor.low, factor.high);
     }
     found_.emplace_back(std::move(faults), cost);
   }
@@ -351,8 +354,9 @@ std::string ChannelFault::says(const DriveMotion& motion) const {
       return fmt::format("{} are exchanged: they are recorded as {}", all, fmt::join(truth, ", "));
     }
     case Cause::kMissingTerm:
-      return fmt::format(
-          "{} reads {:.3g} times what the vehicle turns: that of a body which leans, or of a road across", all, factor);
+      return fmt::format("{} reads {:.3g} times what yaw rate and speed imply: {}, or its scale is wrong", all, factor,
+                         factor > 1.0 && !motion.gravity_removed ? "the body or the road leans, the vehicle slides"
+                                                                 : "the vehicle slides");
     case Cause::kSwap:
       return fmt::format("{} shows another motion", all);
     default:

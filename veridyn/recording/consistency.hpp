@@ -38,8 +38,11 @@ struct ChannelRelation {
   [[nodiscard]] bool unrelated() const { return moved() && correlation * correlation < 0.25; }
   /// By range and correlation; passed where nothing moved.
   [[nodiscard]] estimation::Outcome outcome() const;
-  /// Moved, and of the right size.
-  [[nodiscard]] bool fits() const { return moved() && outcome() == estimation::Outcome::kPassed; }
+  /// Moved, nothing to object to, and known well enough that a wrong sign, axis or unit would have been seen.
+  [[nodiscard]] bool fits() const {
+    const bool known = may_be_none || (low > tolerance.lowest && high < tolerance.highest);
+    return moved() && outcome() == estimation::Outcome::kPassed && known;
+  }
 };
 
 /// One thing that is wrong with channels.

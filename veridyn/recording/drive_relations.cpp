@@ -33,6 +33,8 @@ constexpr double kSpeedsDiffer = 0.05;
 constexpr double kLeastUndersteer = -0.003, kMostUndersteer = 0.02;
 /// And most of them, 4.5 deg/g: where the wheelbase is not known either.
 constexpr double kUsualUndersteer = 0.008;
+/// Share of the mean speed below which a vehicle stands or starts.
+constexpr double kSlowShare = 0.3;
 /// Wheelbases from a 1:10 model to a truck, and of what drives fast [m].
 constexpr double kShortestWheelbase = 0.15, kShortestOfFast = 1.5, kLongestWheelbase = 8.0, kFast_mps = 10.0;
 /// A scale is verified where its range is no wider than this to either side.
@@ -276,14 +278,16 @@ void Relations::compare_accel_x() {
 }
 
 void Relations::compare_steer() {
-  if (!m_.has(kSteer) || !m_.has(kGyroZ) || !m_.has(kSpeed) || m_.hand_wheel) return;
+  if (!m_.has(kSteer) || !m_.has(kGyroZ) || !m_.has(kSpeed)) return;
   const GridSeries &speed = m_.signals[kSpeed], &yaw_rate = m_.signals[kGyroZ];
   const GridSeries turning = product(yaw_rate, speed), yaw_acceleration = derivative(yaw_rate);
   GridSeries kinematic(turning.size());
   // std::vector<bool> has no data to view.
   const auto used = std::make_unique<bool[]>(turning.size());  // NOLINT(modernize-avoid-c-arrays)
   for (std::size_t k = 0; k < turning.size(); ++k) {
-    kinematic[k] = wheelbase() * yaw_rate[k] / speed[k];
+    // Near a standstill it is noise over nothing.
+    const bool drives = std::abs(speed[k]) > kSlowShare * std::abs(typical_speed_);
+    kinematic[k] = drives ? wheelbase() * yaw_rate[k] / speed[k] : kNaN;
     used[k] = std::abs(turning[k]) < kLinearTyres_mps2;
   }
   const std::span<const bool> linear(used.get(), turning.size());
@@ -299,7 +303,9 @@ void Relations::compare_steer() {
     const double u2 = typical_speed_ * typical_speed_;
     const double shortest = typical_speed_ > kFast_mps ? kShortestOfFast : kShortestWheelbase;
     const double longest = kLongestWheelbase + kUsualUndersteer * u2;
-    relation->tolerance = {.low = shortest, .high = longest, .lowest = shortest, .highest = longest};
+    const double low = shortest * (m_.hand_wheel ? kLeastSteeringRatio : 1.0);
+    const double high = longest * (m_.hand_wheel ? kMostSteeringRatio : 1.0);
+    relation->tolerance = {.low = low, .high = high, .lowest = low, .highest = high};
     relation->verified = false;
     return;
   }

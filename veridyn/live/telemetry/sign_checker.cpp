@@ -15,11 +15,6 @@ constexpr double kLongest = 120.0;  // [s]
 /// An operator waits: half the time that a recording's check needs.
 constexpr double kBand_Hz = 1.0;
 
-/// Moves as it should and by about as much: a wrong sign, axis or unit is not that near.
-bool agrees(const recording::ChannelRelation& r) {
-  return r.moved() && !r.unrelated() && r.low > r.tolerance.lowest && r.high < r.tolerance.highest;
-}
-
 }  // namespace
 
 void SignChecker::add(const std::vector<recording::MotionSample>& samples) {
@@ -63,7 +58,7 @@ SignVerdict SignChecker::check() const {
       return {SignVerdict::Kind::kWrong, fmt::format("{}", fmt::join(faults, found.is_sure() ? "; " : ", or "))};
     for (Needed& n : all) {
       for (const recording::ChannelRelation& r : found.relations)
-        n.fits = n.fits || (r.channel == n.channel && r.power[n.channel] == 1 && agrees(r));
+        n.fits = n.fits || (r.channel == n.channel && r.power[n.channel] == 1 && r.fits());
     }
   }
   std::vector<std::string> missing;
