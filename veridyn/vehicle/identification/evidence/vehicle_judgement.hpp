@@ -27,6 +27,7 @@ struct VehicleFindings {
   std::optional<estimation::Parameter> steer_delay = {};  ///< see StructureLadder
   std::span<const StructureDoubt> structure_doubts = {};  ///< which the intervals of `chosen` have
   estimation::UnfinishedSearch unfinished = {};           ///< by an interruption
+  std::span<const estimation::Evidence> further = {};     ///< rows of what else was done with the estimate
 };
 
 /// The verdict on an identified vehicle and what it rests on.
@@ -44,6 +45,14 @@ struct AgreementChecks {
 };
 /// The checks of an estimate against the others of the same drive.
 [[nodiscard]] AgreementChecks check_agreement(const VehicleProblem& problem, const VehicleFindings& findings);
+
+/// What the noise of its sensor and of the steering leaves of an output [its unit]; nothing where it is not judged.
+[[nodiscard]] std::optional<double> noise_of(const estimation::PredictedQuantity& q, const DriveSignals& signals,
+                                             const DriveValidation& by_noise);
+
+/// Whether that is less than sensors have, so that the recording is a simulator's: residuals of it are errors of the
+/// model alone.
+[[nodiscard]] bool is_noise_free(const estimation::PredictedQuantity& q, double sigma);
 
 /// Of a drive that determines none of the vehicle's parameters, whose names are given: no parameters, and no prediction
 /// to judge.
