@@ -7,6 +7,7 @@
 
 #include "veridyn/core/finishing_progress.hpp"
 #include "veridyn/vehicle/identification/evidence/drive_evidence.hpp"
+#include "veridyn/vehicle/identification/evidence/model_error.hpp"
 #include "veridyn/vehicle/identification/evidence/vehicle_judgement.hpp"
 #include "veridyn/vehicle/identification/evidence/vehicle_plausibility.hpp"
 #include "veridyn/vehicle/identification/fit/estimated_vehicle.hpp"
@@ -95,8 +96,15 @@ VehicleIdentification identify_structure(const VehicleProblem& problem,
   if (output_error == nullptr || out.chosen != VehicleMethod::kOutputError) unfinished.converged = true;
   finishing.stage(unfinished.empty() ? "validating on the hold-out"
                                      : "interrupted: validating the best estimate so far (Ctrl-C again ends at once)");
+  double model_error = 1.0;
+  if (output_error != nullptr && is_noise_free(problem.signals, problem.segments.identification))
+    model_error = model_error_factor(output_error->raw, problem.signals, problem.segments.identification);
+  for (VehicleEstimate& e : out.estimates)
+    if (e.method == VehicleMethod::kOutputError)
+      e = with_model_error(std::move(e), model_error, problem.options.significance);
   std::optional<PartsAgreement> parts;
-  if (!progress.interrupted()) parts = compare_parts(problem, out.chosen, by_regression, output_error, progress);
+  if (!progress.interrupted())
+    parts = compare_parts(problem, out.chosen, by_regression, output_error, model_error, progress);
   if (progress.interrupted() && !parts) unfinished.left_out.emplace_back("parts of the drive were not compared");
   DriveTheta theta = theta_of(problem, *out.best(), out.output_error ? &*out.output_error : nullptr, finishing);
   const double widening = variance_factor(parts);
@@ -128,6 +136,7 @@ VehicleIdentification identify_structure(const VehicleProblem& problem,
                                                        .parts = parts,
                                                        .steer_delay = ladder.steer_delay,
                                                        .structure_doubts = out.structure_doubts,
+                                                       .model_error = model_error,
                                                        .unfinished = unfinished,
                                                        .further = more});
   out.verdict = judgement.verdict;

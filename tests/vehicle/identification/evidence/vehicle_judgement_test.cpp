@@ -253,7 +253,12 @@ TEST(VehicleJudgement, ANoiseFreeDriveIsJudgedByTheShareThatIsNotModelled) {
                                     {0.92, estimation::Outcome::kPassed},
                                     {0.8, estimation::Outcome::kFailed}}) {
     Case c;
-    c.signals[DriveSignal::kYawRate].sigma = 2e-8;
+    c.signals.grid = {.begin = 0.0, .step = 0.01, .count = 200};
+    for (const DriveSignal signal : {DriveSignal::kSteer, DriveSignal::kYawRate}) {
+      c.signals[signal].sigma = 2e-8;
+      for (int k = 0; k < 200; ++k) c.signals[signal].value.push_back(0.1 * std::sin(0.1 * k));
+    }
+    c.segments.identification = {{0.0, 1.9}};
     c.fit.quantities = {yaw_rate(r2, 0.1 * std::sqrt(1.0 - r2), 0.99)};
     const VehicleJudgement found = c.judge();
     const estimation::Evidence residual = judged_row(found, Check::kResidualBeyondSensors);

@@ -24,7 +24,7 @@ PartsAgreement compared(const Eigen::VectorXd& here, const Eigen::VectorXd& ther
 }
 
 std::optional<PartsAgreement> by_output_error(const VehicleProblem& problem, const OutputErrorResult& here,
-                                              Progress& progress) {
+                                              double model_error, Progress& progress) {
   VehicleParameters<double> start = problem.start;
   start.C_f = here.raw.theta(0);
   start.C_r = here.raw.theta(1);
@@ -58,7 +58,7 @@ std::optional<PartsAgreement> by_output_error(const VehicleProblem& problem, con
     if (determined(here.raw) && determined(there)) both.push_back(i);
   }
   if (both.empty()) return std::nullopt;
-  const Eigen::MatrixXd covariance = here.raw.covariance + there.covariance;
+  const Eigen::MatrixXd covariance = model_error * (here.raw.covariance + there.covariance);
   return compared(here.raw.theta(both), there.theta(both), covariance(both, both));
 }
 
@@ -66,10 +66,11 @@ std::optional<PartsAgreement> by_output_error(const VehicleProblem& problem, con
 
 std::optional<PartsAgreement> compare_parts(const VehicleProblem& problem, VehicleMethod chosen,
                                             const EquationErrorEstimates* equation_error,
-                                            const OutputErrorResult* output_error, Progress& progress) {
+                                            const OutputErrorResult* output_error, double model_error,
+                                            Progress& progress) {
   if (problem.segments.holdout.empty()) return std::nullopt;
   if (chosen == VehicleMethod::kOutputError && output_error != nullptr)
-    return by_output_error(problem, *output_error, progress);
+    return by_output_error(problem, *output_error, model_error, progress);
   if (equation_error == nullptr) return std::nullopt;
   const DriveRegressionResult there = regress(problem, problem.segments.holdout, problem.start);
   for (const AxleEstimate& axle : equation_error->regression.axles) {

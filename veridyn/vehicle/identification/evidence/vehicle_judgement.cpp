@@ -10,6 +10,7 @@
 #include "veridyn/estimation/judgement/agreement.hpp"
 #include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/vehicle/identification/evidence/drive_evidence.hpp"
+#include "veridyn/vehicle/identification/evidence/model_error.hpp"
 #include "veridyn/vehicle/identification/evidence/vehicle_plausibility.hpp"
 #include "veridyn/vehicle/identification/fit/axle_estimate.hpp"
 #include "veridyn/vehicle/identification/structure/structure_doubt.hpp"
@@ -30,10 +31,6 @@ using estimation::row_of;
 
 /// Correlation of neighbouring residuals from which they count as autocorrelated.
 constexpr double kAutocorrelated = 0.3;
-/// Of a signal's deviation, below which noise is none of a sensor but the rounding of a simulator. A fibre gyro has
-/// 0.01 deg/s where a car yaws by 3 to 10 deg/s (rms): 1 to 3 thousandths; those of production cars have ten times it.
-constexpr double kLeastNoise = 1e-3;
-
 double percent_explained(const estimation::PredictedQuantity& q) { return 100.0 * std::max(0.0, q.fit.r2); }
 
 /// A residual against what sensors and noisy steering leave, and the share of the output's power that is neither
@@ -45,9 +42,9 @@ struct ResidualFinding {
 
 /// What exceeds the noise by more than that is known to, and is autocorrelated, is motion that the model does not have.
 /// Where there is no noise to compare with, the share tells.
-ResidualFinding check_residual(const estimation::PredictedQuantity& q, double sigma) {
+ResidualFinding check_residual(const estimation::PredictedQuantity& q, double sigma, bool noise_free) {
   const double ratio = std::pow(q.fit.rmse / sigma, 2), unexplained = std::max(0.0, 1.0 - q.fit.r2);
-  if (is_noise_free(q, sigma)) {
+  if (noise_free) {
     Evidence row = row_of(Check::kResidualBeyondSensors, q.name, Outcome::kNotVerified);
     row.cause = Cause::kNoise;
     return {std::move(row), unexplained};
@@ -61,15 +58,27 @@ ResidualFinding check_residual(const estimation::PredictedQuantity& q, double si
   return {std::move(row), unexplained * std::max(0.0, 1.0 - limits.highest / ratio)};
 }
 
+/// What the noise of its sensor and of the steering leaves of an output [its unit]; nothing where it is not judged.
+std::optional<double> noise_of(const estimation::PredictedQuantity& q, const DriveSignals& signals,
+                               const DriveValidation& by_noise) {
+  const auto signal = std::ranges::find(kDriveSignalNames, q.name);
+  // A heading is the integral of what is judged.
+  if (signal == kDriveSignalNames.end() || *signal == kDriveSignalNames[DriveSignal::kYaw]) return std::nullopt;
+  const estimation::PredictedQuantity* by_steering = by_noise.find(q.name);
+  return std::hypot(signals.signals[signal - kDriveSignalNames.begin()].sigma,
+                    by_steering != nullptr ? by_steering->fit.rmse : 0.0);
+}
+
 /// All residuals, and the largest share of an output's power that nothing explains.
 std::vector<Evidence> check_residuals(const VehicleProblem& problem, const VehicleFindings& findings) {
   std::vector<Evidence> rows;
+  const bool noise_free = is_noise_free(problem.signals, problem.segments.identification);
   double unmodelled = 0.0;
   std::string worst = "outputs";
   for (const estimation::PredictedQuantity& q : findings.fit.quantities) {
     const std::optional<double> sigma = noise_of(q, problem.signals, findings.by_noise);
     if (!sigma) continue;
-    ResidualFinding found = check_residual(q, *sigma);
+    ResidualFinding found = check_residual(q, *sigma, noise_free);
     if (found.unmodelled > unmodelled) {
       unmodelled = found.unmodelled;
       worst = q.name;
@@ -127,7 +136,7 @@ Evidence by_p(Check check, double p, const VehicleIdentifyOptions& options) {
 
 /// Equation error against output error, where that has all three parameters.
 std::optional<Evidence> check_methods(const VehicleProblem& problem, const AxleEstimate& axle,
-                                      const OutputErrorResult* output_error) {
+                                      const OutputErrorResult* output_error, double model_error) {
   if (output_error == nullptr || !output_error->estimate.usable) return std::nullopt;
   Eigen::Vector3d difference;
   for (std::size_t i = 0; i < kBasicUnknowns.size(); ++i) {
@@ -138,28 +147,13 @@ std::optional<Evidence> check_methods(const VehicleProblem& problem, const AxleE
   // Both come from the same data, so the sum of covariances is more than their difference has: a weak test, but one
   // without false alarms.
   Eigen::Matrix3d covariance = axle.covariance;
-  covariance += output_error->raw.covariance.topLeftCorner(3, 3);
+  covariance += model_error * output_error->raw.covariance.topLeftCorner(3, 3);
   // Small angles, which only equation error takes.
   covariance.diagonal() += (kSmallAngleError * axle.value).cwiseAbs2();
   return by_p(Check::kMethodsAgree, estimation::agreement_p(difference, covariance), problem.options);
 }
 
 }  // namespace
-
-bool is_noise_free(const estimation::PredictedQuantity& q, double sigma) {
-  // The signal's deviation is rmse/sqrt(1 - R2).
-  return sigma * std::sqrt(std::max(0.0, 1.0 - q.fit.r2)) < kLeastNoise * q.fit.rmse;
-}
-
-std::optional<double> noise_of(const estimation::PredictedQuantity& q, const DriveSignals& signals,
-                               const DriveValidation& by_noise) {
-  const auto signal = std::ranges::find(kDriveSignalNames, q.name);
-  // A heading is the integral of what is judged.
-  if (signal == kDriveSignalNames.end() || *signal == kDriveSignalNames[DriveSignal::kYaw]) return std::nullopt;
-  const estimation::PredictedQuantity* by_steering = by_noise.find(q.name);
-  return std::hypot(signals.signals[signal - kDriveSignalNames.begin()].sigma,
-                    by_steering != nullptr ? by_steering->fit.rmse : 0.0);
-}
 
 std::vector<Evidence> not_excited_rows(std::span<const std::string> unexcited) {
   Evidence row = row_of(Check::kExcitation, "steer", Outcome::kFailed);
@@ -178,7 +172,7 @@ AgreementChecks check_agreement(const VehicleProblem& problem, const VehicleFind
   const AxleEstimate* axle = regression.find(regression.recommends ? regression.recommended : Method::kGtls);
   if (axle == nullptr || !axle->usable) return checks;
   checks.consistency = by_p(Check::kConsistencyEquation, axle->consistency_p, problem.options);
-  checks.methods = check_methods(problem, *axle, findings.output_error);
+  checks.methods = check_methods(problem, *axle, findings.output_error, findings.model_error);
   return checks;
 }
 

@@ -26,8 +26,9 @@ struct VehicleFindings {
   std::optional<PartsAgreement> parts = {};
   std::optional<estimation::Parameter> steer_delay = {};  ///< see StructureLadder
   std::span<const StructureDoubt> structure_doubts = {};  ///< which the intervals of `chosen` have
-  estimation::UnfinishedSearch unfinished = {};           ///< by an interruption
-  std::span<const estimation::Evidence> further = {};     ///< rows of what else was done with the estimate
+  double model_error = 1.0;                      ///< by which variances of output error grow (`model_error_factor`)
+  estimation::UnfinishedSearch unfinished = {};  ///< by an interruption
+  std::span<const estimation::Evidence> further = {};  ///< rows of what else was done with the estimate
 };
 
 /// The verdict on an identified vehicle and what it rests on.
@@ -45,14 +46,6 @@ struct AgreementChecks {
 };
 /// The checks of an estimate against the others of the same drive.
 [[nodiscard]] AgreementChecks check_agreement(const VehicleProblem& problem, const VehicleFindings& findings);
-
-/// What the noise of its sensor and of the steering leaves of an output [its unit]; nothing where it is not judged.
-[[nodiscard]] std::optional<double> noise_of(const estimation::PredictedQuantity& q, const DriveSignals& signals,
-                                             const DriveValidation& by_noise);
-
-/// Whether that is less than sensors have, so that the recording is a simulator's: residuals of it are errors of the
-/// model alone.
-[[nodiscard]] bool is_noise_free(const estimation::PredictedQuantity& q, double sigma);
 
 /// Of a drive that determines none of the vehicle's parameters, whose names are given: no parameters, and no prediction
 /// to judge.

@@ -22,7 +22,8 @@ struct VehicleEstimate {
   /// equation error `steer_offset`, what the biases of steering, gyro and accelerometer add up to as a steer angle.
   std::vector<estimation::Parameter> parameters;
   Eigen::MatrixXd covariance;  ///< in their order
-  /// The part of it that comes from what is not known of mass, a and b; empty: none.
+  /// The part of it that more of the same drive would not make smaller, what is not known of mass, a and b, and the
+  /// model's error on a noise-free drive; empty: none.
   Eigen::MatrixXd given_covariance = {};
   double degrees_of_freedom = 1.0;
   /// Null where the method does not estimate it.
