@@ -6,6 +6,7 @@
 #include <array>
 
 #include "tests/vehicle/simulated_drive.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -69,14 +70,14 @@ TEST(VehicleStudy, AnotherDriveHoldsForTheSameCarAndNotForAnother) {
   const VehicleParameters<double> p = family_car();
   const VehicleAnalysis same = validated_on_a_drive(given_values({p.C_f, p.C_r, p.I_z}, kAllIdentified));
   const estimation::Evidence& row = same.identification.checks.front();
-  EXPECT_EQ(row.name, "another drive");
-  EXPECT_EQ(row.outcome, estimation::Outcome::kPassed) << row.text;
+  EXPECT_EQ(row.check, estimation::Check::kAnotherRecording);
+  EXPECT_EQ(row.outcome, estimation::Outcome::kPassed) << says(row);
   EXPECT_EQ(same.estimate.judgement.prediction.grade, estimation::Grade::kYes);
   EXPECT_EQ(same.estimate.judgement.parameters.grade, estimation::Grade::kNotJudged) << "nothing was identified";
   // Front tyres of a tenth of the stiffness hardly turn a car.
   const VehicleAnalysis other = validated_on_a_drive(given_values({0.1 * p.C_f, p.C_r, p.I_z}, kAllIdentified));
   EXPECT_EQ(other.identification.checks.front().outcome, estimation::Outcome::kFailed)
-      << other.identification.checks.front().text;
+      << says(other.identification.checks.front());
   EXPECT_EQ(other.identification.verdict, estimation::GroupVerdict::kRejected);
   EXPECT_EQ(other.estimate.judgement.prediction.grade, estimation::Grade::kNo);
   EXPECT_THAT(other.identification.reason, ::testing::StartsWith("does not hold"));

@@ -130,20 +130,9 @@ void TrackedDrive::check(const recording::MappedRecording& mapped, const Progres
     return;
   }
   const KnownBody& body = tracker_->body();
-  const estimation::Parameter lean{.name = "roll_gradient", .value = body.roll.gradient};
-  const bool leans = body.roll.gradient > 0.0;
-  recording_.clear();
-  for (estimation::Evidence& row : drive_evidence(mapped, signals, segments, tracker_->start(), signals_, progress)) {
-    row = explained_by_roll(std::move(row), leans ? &lean : nullptr, signals_.gravity);
-    if (!row.passed() && row.name == kOrderInTime && (leans || !tracker_->changes().empty())) {
-      row.outcome = estimation::Outcome::kNotVerified;
-      row.text =
-          "stamps that are late cannot be told here from a body that leans or tyres whose grip changed during the "
-          "drive";
-      row.advice = "`veridyn identify` of a part without a change tells them apart";
-    }
-    recording_.push_back(std::move(row));
-  }
+  KnownByModel known{.changed = !tracker_->changes().empty()};
+  if (body.roll.gradient > 0.0) known.roll_gradient = body.roll.gradient;
+  recording_ = recording_rows(drive_findings(mapped, signals, segments, tracker_->start(), signals_, progress), known);
 }
 
 estimation::Estimate TrackedDrive::estimate() const {

@@ -4,10 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
+#include <iterator>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/vehicle/identification/evidence/drive_evidence.hpp"
 #include "veridyn/vehicle/identification/fit/estimated_drive_model.hpp"
 #include "veridyn/vehicle/identification/validation/vehicle_prediction.hpp"
@@ -15,6 +15,10 @@
 
 namespace veridyn::vehicle {
 namespace {
+
+using estimation::Check;
+using estimation::Outcome;
+using estimation::row_of;
 
 /// Cornering stiffness over static load of common tyres [1/rad].
 constexpr double kStiffnessPerLoad = 20.0;
@@ -99,18 +103,16 @@ std::vector<TimeSpan> validation_spans(const DriveSegments& segments, bool holdo
   return spans;
 }
 
-/// The analysis with its estimate driven open loop, where the study asks for it, and what that says of the prediction.
-VehicleAnalysis driven_open_loop(VehicleAnalysis analysis, OpenLoopUse use, const estimation::Estimate& estimate,
-                                 const VehicleStudy& study, Progress& progress) {
-  if (!study.open_loop.asked() || progress.interrupted()) return analysis;
+/// The estimate driven open loop, where the study asks for it; the rows are what that says of the prediction.
+std::vector<estimation::Evidence> driven_open_loop(VehicleAnalysis& analysis, OpenLoopUse use,
+                                                   const estimation::Estimate& estimate, const VehicleStudy& study,
+                                                   Progress& progress) {
+  if (!study.open_loop.asked() || progress.interrupted()) return {};
   progress.stage("driving open loop");
   analysis.open_loop =
       drive_open_loop({analysis.signals, analysis.segments, use, study.vehicle, study.identify.model, estimate},
                       study.open_loop, progress);
-  VehicleIdentification& id = analysis.identification;
-  for (estimation::Evidence& row : open_loop_evidence(analysis.open_loop)) id.checks.push_back(std::move(row));
-  id.judgement = estimation::judge(id.checks);
-  return analysis;
+  return open_loop_evidence(analysis.open_loop);
 }
 
 /// What was identified, without the error of mass and geometry, which a model that keeps these does not have.
@@ -119,6 +121,19 @@ estimation::Estimate by_motion(const VehicleIdentification& identification, cons
   const VehicleEstimate* const best = identification.best();
   if (best != nullptr && best->given_covariance.size() > 0) estimate.covariance -= best->given_covariance;
   return estimate;
+}
+
+/// `yaw_rate` is null where this drive could not be predicted.
+estimation::Evidence another_drive(const estimation::PredictedQuantity* yaw_rate, double least_r2) {
+  const bool holds = yaw_rate != nullptr && yaw_rate->fit.r2 >= least_r2;
+  estimation::Evidence row =
+      row_of(Check::kAnotherRecording, "yaw_rate", estimation::passed_or(holds, Outcome::kFailed));
+  row.limit = least_r2;
+  if (yaw_rate == nullptr)
+    row.cause = estimation::Cause::kMissing;
+  else
+    row.value = yaw_rate->fit.r2;
+  return row;
 }
 
 /// The results in the terms that all domains share.
@@ -157,15 +172,16 @@ VehicleAnalysis identify(const VehicleStudy& study, Progress& progress) {
   VehicleAnalysis out;
   out.signals = prepare_drive_signals(study.log.mapped, study.signals);
   out.segments = find_drive_segments(out.signals, study.segments, study.log.holdout_runs);
-  const std::vector<estimation::Evidence> recording =
-      drive_evidence(study.log.mapped, out.signals, out.segments, study.vehicle, study.signals, progress);
+  const DriveFindings recording =
+      drive_findings(study.log.mapped, out.signals, out.segments, study.vehicle, study.signals, progress);
   VehicleIdentifyOptions options = study.identify;
   options.model = with_course(std::move(options.model), out.signals.lateral_by_course);
-  out.identification =
-      identify_parameters({out.signals, out.segments, study.vehicle, study.signals, options, recording}, progress);
+  out.identification = identify_parameters(
+      {out.signals, out.segments, study.vehicle, study.signals, options, &recording}, progress,
+      [&](const VehicleIdentification& found) {
+        return driven_open_loop(out, OpenLoopUse::kHoldout, by_motion(found, study.subject_name), study, progress);
+      });
   out.interrupted = out.identification.interrupted;
-  const estimation::Estimate found = by_motion(out.identification, study.subject_name);
-  out = driven_open_loop(std::move(out), OpenLoopUse::kHoldout, found, study, progress);
   std::vector<std::string> warnings = warnings_of(study, out.signals);
   if (!out.signals.gravity_removed && out.signals[DriveSignal::kAccelY].available() &&
       !study.identify.model.free[DriveUnknown::kAccelYScale] && !has_roll(out.identification.structure)) {
@@ -196,41 +212,32 @@ VehicleAnalysis validate(const VehicleStudy& study, const estimation::Estimate& 
     const DriveTheta theta{fit_drive_biases(out.signals, spans, given.vehicle, given.options, progress),
                            given.covariance};
     id.validation = predict_drive(out.signals, spans, given.vehicle, given.options, theta, progress);
-    const estimation::PredictedQuantity* r = id.validation.find("yaw_rate");
+    id.checks = {another_drive(id.validation.find("yaw_rate"), study.identify.min_holdout_r2)};
     // A vehicle is rejected as a whole; what was not excited, or given, keeps that status.
-    const bool rejected = std::ranges::any_of(std::array{"C_f", "C_r", "I_z"}, [&](const char* name) {
-      const estimation::Parameter* p = estimate.find(name);
-      return p != nullptr && p->status == estimation::ParameterStatus::kRejected;
-    });
-    const bool holds = r != nullptr && r->fit.r2 >= study.identify.min_holdout_r2 && !rejected;
-    id.checks = {{.name = "another drive",
-                  .outcome = estimation::passed_or(holds, estimation::Outcome::kFailed),
-                  .value = r == nullptr ? std::nan("") : r->fit.r2,
-                  .limit = study.identify.min_holdout_r2,
-                  .scale = "R2",
-                  .text = rejected       ? std::string("the estimate was rejected where it was identified")
-                          : r == nullptr ? id.validation.text
-                                         : fmt::format("it explains {:.1f} % of the yaw rate's variance of this drive",
-                                                       100.0 * std::max(0.0, r->fit.r2)),
-                  .bears_on = estimation::Purpose::kPrediction}};
-    for (estimation::Evidence& row :
-         drive_evidence(study.log.mapped, out.signals, out.segments, given.vehicle, study.signals, progress)) {
-      // Validation says nothing of the parameters.
-      const bool predicts = row.bears_on.contains(estimation::Purpose::kPrediction);
-      row.bears_on = estimation::Purpose::kData;
-      if (predicts) row.bears_on = row.bears_on | estimation::Purpose::kPrediction;
-      id.checks.push_back(std::move(row));
-    }
+    if (std::ranges::any_of(estimate.parameters, [](const estimation::Parameter& p) {
+          return p.status == estimation::ParameterStatus::kRejected && is_one_of(p.name, kBasicUnknowns);
+        }))
+      id.checks.insert(id.checks.begin(), row_of(Check::kRejectedBefore, "", Outcome::kFailed));
+    KnownByModel known;
+    if (const estimation::Parameter* p = estimate.find(kDriveUnknownNames[DriveUnknown::kRollGradient]))
+      known.roll_gradient = p->value;
+    const auto add = [&](std::vector<estimation::Evidence> rows) {
+      std::ranges::move(rows, std::back_inserter(id.checks));
+    };
+    add(recording_rows(
+        drive_findings(study.log.mapped, out.signals, out.segments, given.vehicle, study.signals, progress), known));
+    add(driven_open_loop(out, study.validate_on_holdout_only ? OpenLoopUse::kOtherHoldout : OpenLoopUse::kOtherDrive,
+                         estimate, study, progress));
     id.judgement = estimation::judge(id.checks);
+    // Nothing was identified.
+    id.judgement.parameters = {};
+    const estimation::PurposeGrade& predicts = id.judgement.prediction;
+    const bool holds = predicts.grade == estimation::Grade::kYes || predicts.grade == estimation::Grade::kWithCare;
     id.verdict = holds ? estimation::GroupVerdict::kIdentified : estimation::GroupVerdict::kRejected;
-    id.reason = fmt::format("{}: {}", holds ? "holds" : "does not hold", id.checks.front().text);
+    id.reason = holds ? "holds: " + says(id.checks.front()) : "does not hold: " + predicts.decided_by.front();
   }
   id.warnings = warnings_of(study, out.signals);
   id.warnings.emplace_back("constant biases of steering, yaw rate and accel_y were fitted to this drive");
-  if (!spans.empty())
-    out = driven_open_loop(std::move(out),
-                           study.validate_on_holdout_only ? OpenLoopUse::kOtherHoldout : OpenLoopUse::kOtherDrive,
-                           estimate, study, progress);
   out.interrupted = progress.interrupted();
   out = with_results(std::move(out), study);
   out.estimate.parameters = estimate.parameters;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tests/vehicle/campaign/campaign.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::vehicle {
@@ -83,7 +84,7 @@ TEST(RollingCars, AGentleDriveSaysWhatItLeavesOpenOfTheStructure) {
   const double doubt = estimate.fit.at("I_z.structure_doubt");
   EXPECT_GT(doubt, 0.0);
   EXPECT_GT(I_z->sigma, doubt);
-  const auto row = std::ranges::find(found.checks, std::string("doubt of the structure"), &estimation::Evidence::name);
+  const auto row = std::ranges::find(found.checks, estimation::Check::kStructureDoubt, &estimation::Evidence::check);
   ASSERT_NE(row, found.checks.end());
 }
 

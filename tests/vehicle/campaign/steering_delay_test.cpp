@@ -13,8 +13,8 @@
 #include "tests/support/channel_faults.hpp"
 #include "tests/vehicle/campaign/campaign.hpp"
 #include "tests/vehicle/campaign/rolling_cars.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/numerics/threads/parallel.hpp"
-#include "veridyn/vehicle/identification/evidence/drive_evidence.hpp"
 
 /// How late a recorded steering is, by the model that is identified: the source of the limit.
 namespace veridyn::vehicle {
@@ -27,7 +27,7 @@ struct Found {
   bool refused = false;
   double delay_s = kNaN;
   Outcome outcome = Outcome::kNotVerified;
-  std::string text, advice;
+  std::string text, about;
   DriveStructure structure = DriveStructure::kBicycle;
   double I_z_error = kNaN;  ///< a share
 };
@@ -39,12 +39,12 @@ Found found(VehicleStudy study, double late_s) {
   Found out{.refused = drive.refused};
   if (drive.refused) return out;
   const VehicleIdentification& id = drive.analysis.identification;
-  const auto row = std::ranges::find(id.checks, kOrderInTime, &Evidence::name);
+  const auto row = std::ranges::find(id.checks, estimation::Check::kSteeringDelay, &Evidence::check);
   if (row == id.checks.end()) return out;
   out.delay_s = row->value;
   out.outcome = row->outcome;
-  out.text = row->text;
-  out.advice = row->advice;
+  out.text = says(*row);
+  out.about = row->about;
   out.structure = id.structure;
   if (const VehicleEstimate* best = id.best()) out.I_z_error = best->find("I_z")->value / study.truth.at("I_z") - 1.0;
   return out;
@@ -60,7 +60,7 @@ TEST(SteeringDelay, IsFoundOnABicycleAndNotRaisedWhereThereIsNone) {
   EXPECT_EQ(late.outcome, Outcome::kFailed) << late.text;
   EXPECT_NEAR(late.delay_s, -0.03, 0.002);
   EXPECT_GT(std::abs(late.I_z_error), 0.3);
-  EXPECT_THAT(late.advice, ::testing::HasSubstr("how late steer is recorded"));
+  EXPECT_EQ(late.about, "steer");
 }
 
 // The advice, followed: given the delay, the drive passes again.

@@ -5,12 +5,14 @@
 #include <algorithm>
 
 #include "tests/vehicle/drive_with_drop.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/vehicle/identification/vehicle_identification.hpp"
 #include "veridyn/vehicle/track_drive.hpp"
 
 namespace veridyn::vehicle {
 namespace {
 
+using estimation::Check;
 using testing::family_car;
 using testing::mapped;
 
@@ -90,10 +92,10 @@ TEST(DriveTracker, HoldsWhatStraightDrivingDoesNotExcite) {
   EXPECT_NE(tracker.estimate("car").verdict.find("held at the end"), std::string::npos);
 }
 
-const estimation::Evidence* tracked_row(const estimation::Estimate& estimate, std::string_view name,
-                                        std::string_view about) {
-  const auto row = std::ranges::find_if(
-      estimate.evidence, [&](const estimation::Evidence& e) { return e.name == name && e.about == about; });
+const estimation::Evidence* tracked_row(const estimation::Estimate& estimate, Check check, std::string_view about) {
+  const auto row = std::ranges::find_if(estimate.evidence, [&](const estimation::Evidence& e) {
+    return estimation::check_named(name_of(e)) == check && e.about == about;
+  });
   return row == estimate.evidence.end() ? nullptr : &*row;
 }
 
@@ -106,31 +108,31 @@ estimation::Estimate tracked_estimate(const Recording& recording) {
 TEST(DriveTrackerRows, PassForACarThatDoesNotChange) {
   const estimation::Estimate estimate = tracked_estimate(drive_with_drop(3, 100.0, 1e9));
   for (const std::string_view axle : kTrackedAxleNames) {
-    for (const char* name : {"residual beyond the sensors", "residual autocorrelation", "collinearity", "excitation",
-                             "agreement of the recording's parts", "changes", "prediction of the next row"}) {
-      const estimation::Evidence* row = tracked_row(estimate, name, axle);
-      ASSERT_NE(row, nullptr) << name << " of " << axle;
-      EXPECT_TRUE(row->passed() || row->bears_on.empty()) << name << " of " << axle << ": " << row->text;
+    for (const Check check : {Check::kResidualBeyondSensors, Check::kResidualAutocorrelation, Check::kCollinearity,
+                              Check::kExcitation, Check::kTrackedParts, Check::kChanges, Check::kNextRow}) {
+      const estimation::Evidence* row = tracked_row(estimate, check, axle);
+      ASSERT_NE(row, nullptr) << to_string(check) << " of " << axle;
+      EXPECT_TRUE(row->passed() || row->bears_on.empty()) << to_string(check) << " of " << axle << ": " << says(*row);
     }
     EXPECT_EQ(estimate.find(std::string(axle))->status, estimation::ParameterStatus::kIdentified) << axle;
   }
   EXPECT_EQ(estimate.judgement.parameters.grade, estimation::Grade::kYes);
   EXPECT_EQ(estimate.judgement.prediction.grade, estimation::Grade::kYes);
   EXPECT_EQ(estimate.judgement.data.grade, estimation::Grade::kYes);
-  const estimation::Evidence* body = tracked_row(estimate, "lean of the body", "");
+  const estimation::Evidence* body = tracked_row(estimate, Check::kBodyLean, "");
   ASSERT_NE(body, nullptr);
-  EXPECT_TRUE(body->passed()) << body->text;
+  EXPECT_TRUE(body->passed()) << says(*body);
 }
 
 TEST(DriveTrackerRows, SayThatGripDroppedAndWhatIsNotExcited) {
   const estimation::Estimate wet = tracked_estimate(drive_with_drop(1, 90.0, 60.0));
   const bool found = std::ranges::any_of(kTrackedAxleNames, [&](std::string_view axle) {
-    return tracked_row(wet, "changes", axle)->outcome == estimation::Outcome::kCare;
+    return tracked_row(wet, Check::kChanges, axle)->outcome == estimation::Outcome::kCare;
   });
   EXPECT_TRUE(found);
   EXPECT_EQ(wet.judgement.parameters.grade, estimation::Grade::kWithCare);
   const estimation::Estimate straight = tracked_estimate(drive_with_drop(1, 40.0, 1e9, 1e-4));
-  EXPECT_EQ(tracked_row(straight, "excitation", "C_f")->outcome, estimation::Outcome::kCare);
+  EXPECT_EQ(tracked_row(straight, Check::kExcitation, "C_f")->outcome, estimation::Outcome::kCare);
 }
 
 // A steering sensor of the wrong sign, which a whole recording is refused for: to turn that way, the front tyres would
@@ -145,17 +147,17 @@ TEST(DriveTrackerRows, RefuseTyresThatPushTheWrongWay) {
                           s[DriveSignal::kYawRate].value[k], s[DriveSignal::kAccelY].value[k]}));
     return tracker.estimate("car");
   };
-  EXPECT_TRUE(tracked_row(followed(1.0), "plausibility of C_f", "C_f")->passed());
+  EXPECT_TRUE(tracked_row(followed(1.0), Check::kPlausibleStiffness, "C_f")->passed());
   const estimation::Estimate reversed = followed(-1.0);
   EXPECT_LT(reversed.find("C_f")->value, 0.0);
-  const estimation::Evidence* row = tracked_row(reversed, "plausibility of C_f", "C_f");
+  const estimation::Evidence* row = tracked_row(reversed, Check::kPlausibleStiffness, "C_f");
   ASSERT_NE(row, nullptr);
   EXPECT_EQ(row->outcome, estimation::Outcome::kFailed);
   EXPECT_NE(reversed.find("C_f")->status, estimation::ParameterStatus::kIdentified);
   EXPECT_NE(reversed.judgement.parameters.grade, estimation::Grade::kYes);
-  EXPECT_TRUE(tracked_row(reversed, "plausibility of C_r", "C_r")->passed())
+  EXPECT_TRUE(tracked_row(reversed, Check::kPlausibleStiffness, "C_r")->passed())
       << "the rear axle does not know the steering";
-  EXPECT_EQ(tracked_row(reversed, "lean of the body", "")->outcome, estimation::Outcome::kCare) << "it was not learned";
+  EXPECT_EQ(tracked_row(reversed, Check::kBodyLean, "")->outcome, estimation::Outcome::kCare) << "it was not learned";
 }
 
 TEST(DriveTracker, UsesNoSampleAfterTheOneItWasGiven) {

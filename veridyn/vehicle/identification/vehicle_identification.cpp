@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "veridyn/core/finishing_progress.hpp"
+#include "veridyn/vehicle/identification/evidence/drive_evidence.hpp"
+#include "veridyn/vehicle/identification/evidence/model_error.hpp"
 #include "veridyn/vehicle/identification/evidence/vehicle_judgement.hpp"
 #include "veridyn/vehicle/identification/evidence/vehicle_plausibility.hpp"
 #include "veridyn/vehicle/identification/fit/estimated_vehicle.hpp"
@@ -27,8 +29,9 @@ VehicleIdentification not_excited(const VehicleProblem& problem) {
   out.verdict = estimation::GroupVerdict::kNotExcited;
   out.reason = fmt::format("there is nothing to identify from: {}", problem.segments.text);
   out.estimates.push_back(unexcited_estimate(problem, out.reason));
-  out.checks.assign(problem.recording.begin(), problem.recording.end());
-  const std::vector<std::string> unexcited{"C_f", "C_r", "I_z"};
+  if (problem.recording != nullptr) out.checks = recording_rows(*problem.recording);
+  std::vector<std::string> unexcited;
+  for (const DriveUnknown u : kBasicUnknowns) unexcited.emplace_back(kDriveUnknownNames[u]);
   for (estimation::Evidence& row : not_excited_rows(unexcited)) out.checks.push_back(std::move(row));
   out.judgement = estimation::judge(out.checks);
   return out;
@@ -59,11 +62,15 @@ std::vector<VehicleEstimate> marked(std::vector<VehicleEstimate> estimates, cons
 /// With the structure that the options name; `ladder` has its fit.
 VehicleIdentification identify_structure(const VehicleProblem& problem,
                                          const std::optional<EquationErrorEstimates>& equation_error,
-                                         const StructureLadder& ladder, Progress& progress) {
+                                         const StructureLadder& ladder, const FurtherRows& further,
+                                         Progress& progress) {
   const EquationErrorEstimates* const by_regression = equation_error ? &*equation_error : nullptr;
   const OutputErrorResult* const output_error = ladder.empty() ? nullptr : &ladder.fit;
   VehicleIdentification out;
   out.identified = problem.start;
+  out.structure = problem.options.model.structure;
+  out.effects = problem.options.model.effects;
+  out.tried_structures = ladder.tried;
   if (equation_error) {
     out.regression = equation_error->regression;
     out.estimates = equation_error->estimates;
@@ -78,7 +85,7 @@ VehicleIdentification identify_structure(const VehicleProblem& problem,
       choose_method(out.estimates, by_regression ? &by_regression->regression : nullptr, problem.options.method);
   if (out.best() == nullptr) {
     out.reason = why_no_estimate(out.estimates, by_regression);
-    out.checks.assign(problem.recording.begin(), problem.recording.end());
+    if (problem.recording != nullptr) out.checks = recording_rows(*problem.recording);
     out.judgement = estimation::judge(out.checks);
     return out;
   }
@@ -89,8 +96,15 @@ VehicleIdentification identify_structure(const VehicleProblem& problem,
   if (output_error == nullptr || out.chosen != VehicleMethod::kOutputError) unfinished.converged = true;
   finishing.stage(unfinished.empty() ? "validating on the hold-out"
                                      : "interrupted: validating the best estimate so far (Ctrl-C again ends at once)");
+  double model_error = 1.0;
+  if (output_error != nullptr && is_noise_free(problem.signals, problem.segments.identification))
+    model_error = model_error_factor(output_error->raw, problem.signals, problem.segments.identification);
+  for (VehicleEstimate& e : out.estimates)
+    if (e.method == VehicleMethod::kOutputError)
+      e = with_model_error(std::move(e), model_error, problem.options.significance);
   std::optional<PartsAgreement> parts;
-  if (!progress.interrupted()) parts = compare_parts(problem, out.chosen, by_regression, output_error, progress);
+  if (!progress.interrupted())
+    parts = compare_parts(problem, out.chosen, by_regression, output_error, model_error, progress);
   if (progress.interrupted() && !parts) unfinished.left_out.emplace_back("parts of the drive were not compared");
   DriveTheta theta = theta_of(problem, *out.best(), out.output_error ? &*out.output_error : nullptr, finishing);
   const double widening = variance_factor(parts);
@@ -112,6 +126,7 @@ VehicleIdentification identify_structure(const VehicleProblem& problem,
   out.validation = predict_drive(problem.signals, problem.segments.holdout, problem.start, model, theta, finishing);
   const DriveValidation by_noise = with_noisier_inputs(problem, theta, out.fit, finishing);
   out.interrupted = !unfinished.empty();
+  const std::vector<estimation::Evidence> more = further ? further(out) : std::vector<estimation::Evidence>();
   VehicleJudgement judgement = judge_vehicle(problem, {.chosen = *chosen,
                                                        .equation_error = by_regression,
                                                        .output_error = output_error,
@@ -121,7 +136,9 @@ VehicleIdentification identify_structure(const VehicleProblem& problem,
                                                        .parts = parts,
                                                        .steer_delay = ladder.steer_delay,
                                                        .structure_doubts = out.structure_doubts,
-                                                       .unfinished = unfinished});
+                                                       .model_error = model_error,
+                                                       .unfinished = unfinished,
+                                                       .further = more});
   out.verdict = judgement.verdict;
   out.reason = (out.interrupted ? "interrupted: " : "") + judgement.reason;
   out.checks = std::move(judgement.checks);
@@ -134,7 +151,8 @@ VehicleIdentification identify_structure(const VehicleProblem& problem,
 
 }  // namespace
 
-VehicleIdentification identify_parameters(const VehicleProblem& problem, Progress& progress) {
+VehicleIdentification identify_parameters(const VehicleProblem& problem, Progress& progress,
+                                          const FurtherRows& further) {
   if (problem.segments.identification.empty()) return not_excited(problem);
   std::optional<EquationErrorEstimates> equation_error;
   if (problem.options.equation_error && problem.signals[DriveSignal::kAccelY].available()) {
@@ -149,10 +167,7 @@ VehicleIdentification identify_parameters(const VehicleProblem& problem, Progres
   if (!ladder.empty()) options.model = ladder.model;
   VehicleIdentification out = identify_structure(
       {problem.signals, problem.segments, problem.start, problem.signal_options, options, problem.recording},
-      equation_error, ladder, progress);
-  out.structure = options.model.structure;
-  out.effects = options.model.effects;
-  out.tried_structures = std::move(ladder.tried);
+      equation_error, ladder, further, progress);
   if (!ladder.reason.empty()) out.structure_reason = std::move(ladder.reason);
   return out;
 }
@@ -165,7 +180,6 @@ namespace {
 
 /// The structures that were tried, in the terms that all domains share.
 std::vector<estimation::StructureTrial> structure_trials(const VehicleIdentification& identification) {
-  constexpr std::array kShown{DriveUnknown::kCf, DriveUnknown::kCr, DriveUnknown::kIz};
   std::vector<estimation::StructureTrial> trials;
   double first = kNaN;
   for (const TriedStructure& tried : identification.tried_structures) {
@@ -184,11 +198,11 @@ std::vector<estimation::StructureTrial> structure_trials(const VehicleIdentifica
     trial.holdout_quantity = kDriveSignalNames[DriveSignal::kYawRate];
     trial.holdout_rmse = tried.holdout_rmse;
     trial.holdout_unit = kDriveSignalUnits[DriveSignal::kYawRate];
-    for (std::size_t i = 0; i < kShown.size(); ++i)
-      trial.parameters.push_back({.name = std::string(kDriveUnknownNames[kShown[i]]),
+    for (std::size_t i = 0; i < kBasicUnknowns.size(); ++i)
+      trial.parameters.push_back({.name = std::string(kDriveUnknownNames[kBasicUnknowns[i]]),
                                   .value = tried.value[i],
                                   .sigma = tried.sigma[i],
-                                  .unit = std::string(kDriveUnknownUnits[kShown[i]])});
+                                  .unit = std::string(kDriveUnknownUnits[kBasicUnknowns[i]])});
   }
   return trials;
 }

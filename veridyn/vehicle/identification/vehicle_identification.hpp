@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -50,10 +51,15 @@ struct VehicleIdentification {
   [[nodiscard]] const VehicleEstimate* best() const { return find(chosen); }
 };
 
+/// Rows of what else is done with an estimate, asked for before it is judged; estimates, fit and hold-out are there.
+using FurtherRows = std::function<std::vector<estimation::Evidence>(const VehicleIdentification&)>;
+
 /// Identifies the vehicle from a drive: equation error by all methods (`vehicle_estimates.hpp`), output error started
 /// from it, prediction of the hold-out (`vehicle_prediction.hpp`), checks and verdict (`vehicle_judgement.hpp`).
+/// @param further  see FurtherRows; may be empty
 /// @throws InputError when options and signals do not fit
-[[nodiscard]] VehicleIdentification identify_parameters(const VehicleProblem& problem, Progress& progress);
+[[nodiscard]] VehicleIdentification identify_parameters(const VehicleProblem& problem, Progress& progress,
+                                                        const FurtherRows& further = {});
 
 /// As estimate.json has it; `subject` is the vehicle's name.
 [[nodiscard]] estimation::Estimate make_vehicle_estimate(const VehicleIdentification& identification,

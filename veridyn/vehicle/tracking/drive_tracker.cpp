@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/deg_per_g.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/estimation/recursive/tracking_evidence.hpp"
 #include "veridyn/estimation/result/analysis.hpp"
 #include "veridyn/numerics/statistics.hpp"
@@ -270,36 +272,12 @@ std::vector<DriveChange> DriveTracker::append(const DriveSample& s) {
 namespace {
 
 estimation::Evidence body_row(const KnownBody& body) {
-  const bool known = body.source != BodySource::kNone && body.accepted;
-  return {.name = "lean of the body",
-          .outcome = estimation::passed_or(known, estimation::Outcome::kCare),
-          .value = deg_per_g(body.roll.gradient),
-          .scale = "deg per g",
-          .text = body.text,
-          .bears_on = estimation::Purpose::kParameters,
-          .advice = known ? ""
-                          : "give track.estimate_file, the estimate.json of `veridyn identify`, or begin with a minute "
-                            "of lively driving"};
-}
-
-/// The estimate with rows for values that no vehicle has and the grades that all rows give; what must not be used is
-/// marked.
-estimation::Estimate judged(estimation::Estimate estimate, const VehicleParameters<double>& known) {
-  for (estimation::Evidence& row : plausibility(estimate.parameters, known))
-    estimate.evidence.push_back(std::move(row));
-  std::vector<estimation::Judgement> parts;
-  for (estimation::Parameter& p : estimate.parameters) {
-    std::vector<estimation::Evidence> rows;
-    for (const estimation::Evidence& row : estimate.evidence) {
-      const bool of_another = std::ranges::any_of(
-          kTrackedAxleNames, [&](std::string_view name) { return row.about == name && row.about != p.name; });
-      if (!of_another) rows.push_back(row);
-    }
-    parts.push_back(estimation::judge(rows));
-    p = estimation::marked({p}, estimation::verdict_of(parts.back())).front();
-  }
-  estimate.judgement = estimation::judge_together(parts);
-  return estimate;
+  const bool known = body.source != BodySource::kNone;
+  estimation::Evidence row = estimation::row_of(
+      estimation::Check::kBodyLean, "", estimation::passed_or(known && body.accepted, estimation::Outcome::kCare));
+  if (!known) row.cause = estimation::Cause::kMissing;
+  row.value = deg_per_g(body.roll.gradient);
+  return std::move(row).with("relaxation_length", body.relaxation_length);
 }
 
 }  // namespace
@@ -312,6 +290,7 @@ estimation::Estimate DriveTracker::estimate(const std::string& subject,
   out.covariance =
       Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(kTrackedAxles), static_cast<Eigen::Index>(kTrackedAxles));
   std::vector<std::string> followed, held;
+  EnumArray<TrackedAxle, std::vector<estimation::Evidence>, kTrackedAxles> of_axle;
   for (const TrackedAxle axle : kAllTrackedAxles) {
     const double v = value(axle);
     estimation::Parameter p{.name = std::string(kTrackedAxleNames[axle]),
@@ -330,8 +309,7 @@ estimation::Estimate DriveTracker::estimate(const std::string& subject,
       const double factor = q.sigma / r.sigma()(0);
       if (factor > 1.0 && std::isfinite(factor)) p.sigma = std::hypot(factor * followed_sigma(axle), body_sigma(axle));
       if (q.sigma > 0.0) half = (q.high95 - q.value) / q.sigma;
-      for (estimation::Evidence& row : estimation::tracking_evidence(p.name, tracker, regression))
-        out.evidence.push_back(std::move(row));
+      of_axle[axle] = estimation::tracking_evidence(p.name, tracker, regression);
       out.fit[p.name + ".residual_sd"] = r.residual_sd();
       out.fit[p.name + ".samples"] = r.effective_samples();
       const bool is_held = !history_[axle].held.empty() && history_[axle].held.back();
@@ -344,13 +322,25 @@ estimation::Estimate DriveTracker::estimate(const std::string& subject,
     out.covariance(at, at) = p.sigma * p.sigma;
     out.parameters.push_back(std::move(p));
   }
-  if (started()) out.evidence.push_back(body_row(body_));
-  out.evidence.insert(out.evidence.end(), recording.begin(), recording.end());
+  std::vector<estimation::Evidence> of_all(recording.begin(), recording.end());
+  if (started()) of_all.insert(of_all.begin(), body_row(body_));
+  if (body_.source == BodySource::kNone && !body_.text.empty()) out.warnings.push_back(body_.text);
   out.verdict =
       started() ? fmt::format("followed: {}; started from the {}",
                               followed.empty() ? "nothing" : fmt::format("{}", fmt::join(followed, ", ")), begin_text_)
                 : "nothing was followed: no stretch without holes is as long as the filter";
-  if (started()) out = judged(std::move(out), start_);
+  std::vector<estimation::Judgement> parts;
+  for (const TrackedAxle axle : kAllTrackedAxles) {
+    estimation::Parameter& p = out.parameters[static_cast<std::size_t>(axle)];
+    std::vector<estimation::Evidence>& rows = of_axle[axle];
+    if (started()) std::ranges::move(plausibility({&p, 1}, start_), std::back_inserter(rows));
+    out.evidence.insert(out.evidence.end(), rows.begin(), rows.end());
+    rows.insert(rows.end(), of_all.begin(), of_all.end());
+    parts.push_back(estimation::judge(rows));
+    if (started()) p = estimation::marked({p}, estimation::verdict_of(parts.back())).front();
+  }
+  out.evidence.insert(out.evidence.end(), of_all.begin(), of_all.end());
+  if (started()) out.judgement = estimation::judge_together(parts);
   if (!held.empty()) out.verdict += fmt::format("; held at the end, because not excited: {}", fmt::join(held, ", "));
   return out;
 }

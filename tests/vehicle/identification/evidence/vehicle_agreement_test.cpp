@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "tests/vehicle/simulated_drive.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/vehicle/identification/vehicle_identification.hpp"
 
 namespace veridyn::vehicle {
@@ -17,7 +18,7 @@ using ::testing::HasSubstr;
 
 TEST(PartsRow, WidensForSmallContradictionsAndRefusesLargeOnes) {
   EXPECT_EQ(parts_row({{.p = 0.4, .ratio = 0.9}, 0.3}, 1e-3).outcome, Outcome::kPassed);
-  EXPECT_THAT(parts_row({{.p = 0.1, .ratio = 2.25}, 0.01}, 1e-3).text, HasSubstr("widened by 1.50"));
+  EXPECT_THAT(says(parts_row({{.p = 0.1, .ratio = 2.25}, 0.01}, 1e-3)), HasSubstr("1.50 times as wide"));
   EXPECT_EQ(parts_row({{.p = 1e-5, .ratio = 9.0}, 0.02}, 1e-3).outcome, Outcome::kCare);
   EXPECT_EQ(parts_row({{.p = 1e-5, .ratio = 9.0}, 0.2}, 1e-3).outcome, Outcome::kFailed);
   EXPECT_EQ(variance_factor(std::nullopt), 1.0);
@@ -64,7 +65,7 @@ VehicleIdentification of_two_halves(double stiffer) {
 }
 
 const estimation::Evidence& parts_of(const VehicleIdentification& id) {
-  const auto row = std::ranges::find(id.checks, "agreement of data parts", &estimation::Evidence::name);
+  const auto row = std::ranges::find(id.checks, estimation::Check::kPartsOfDrive, &estimation::Evidence::check);
   EXPECT_NE(row, id.checks.end());
   return *row;
 }
@@ -72,9 +73,9 @@ const estimation::Evidence& parts_of(const VehicleIdentification& id) {
 TEST(CompareParts, WidensTheIntervalsOfACarThatChangesALittle) {
   const VehicleIdentification same = of_two_halves(1.0), changed = of_two_halves(1.04), other = of_two_halves(1.3);
   ASSERT_EQ(same.chosen, VehicleMethod::kOutputError);
-  EXPECT_EQ(parts_of(same).outcome, Outcome::kPassed) << parts_of(same).text;
-  EXPECT_EQ(parts_of(changed).outcome, Outcome::kCare) << parts_of(changed).text;
-  EXPECT_EQ(parts_of(other).outcome, Outcome::kFailed) << parts_of(other).text;
+  EXPECT_EQ(parts_of(same).outcome, Outcome::kPassed) << says(parts_of(same));
+  EXPECT_EQ(parts_of(changed).outcome, Outcome::kCare) << says(parts_of(changed));
+  EXPECT_EQ(parts_of(other).outcome, Outcome::kFailed) << says(parts_of(other));
   const estimation::Parameter *narrow = same.best()->find("C_f"), *wide = changed.best()->find("C_f");
   EXPECT_GT(wide->sigma, 2.0 * narrow->sigma);
   // What both halves are lies inside the interval then.

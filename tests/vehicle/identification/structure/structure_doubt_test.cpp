@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "veridyn/estimation/judgement/check.hpp"
+
 namespace veridyn::vehicle {
 namespace {
 
@@ -57,9 +59,9 @@ TEST(StructureDoubt, TheRowSaysWhenMostOfAnIntervalIsDoubt) {
   ASSERT_TRUE(small && large);
   EXPECT_EQ(small->outcome, estimation::Outcome::kPassed);
   EXPECT_EQ(large->outcome, estimation::Outcome::kNotVerified);
-  EXPECT_THAT(large->text, HasSubstr("roll and relaxation (probability 0.5)"));
-  EXPECT_THAT(large->text, HasSubstr("C_f by 2.4 %"));
-  EXPECT_THAT(large->advice, HasSubstr("livelier"));
+  EXPECT_THAT(says(*large), HasSubstr("roll and relaxation (probability 0.5)"));
+  EXPECT_THAT(says(*large), HasSubstr("C_f by 2.4 %"));
+  EXPECT_FALSE(advice_of(*large).empty());
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 namespace veridyn::vehicle {
 namespace {
 
+using estimation::Check;
 using estimation::kBeyondChance;
 using estimation::Outcome;
 using estimation::Tolerance;
@@ -88,15 +89,15 @@ class Relations {
   }
 
   /// A relation of a gain that was found in a motion of at least `least` rms.
-  void add(DriveSuspect sensor, const char* name, std::string against, const std::optional<SignalGain>& found,
-           double least, const Powers& power, const Tolerance& tolerance) {
+  void add(DriveSuspect sensor, Check check, std::string against, const std::optional<SignalGain>& found, double least,
+           const Powers& power, std::optional<Tolerance> tolerance = std::nullopt) {
     if (!found) return;
-    DriveRelation relation{.sensor = sensor, .name = name, .against = std::move(against), .power = power};
+    DriveRelation relation{.sensor = sensor, .check = check, .against = std::move(against), .power = power};
     relation.low = found->low - kBeyondChance * found->low_sigma;
     relation.high = found->high + kBeyondChance * found->high_sigma;
     relation.correlation = found->correlation;
     relation.strong = found->truth_rms > least || found->reading_rms > kClearly * least;
-    relation.tolerance = tolerance;
+    relation.tolerance = tolerance.value_or(estimation::info_of(check).tolerance);
     relation.verified = relation.strong && relation.low > 1.0 - kVerified && relation.high < 1.0 + kVerified;
     out_.push_back(std::move(relation));
   }
@@ -153,18 +154,18 @@ void Relations::compare_yaw_rate() {
   const GridSeries rate = derivative(angle);
   // A delay is in the derivative, and so is sideslip to first order. A course has it to second order too: at the band's
   // edge (2 pi f)^2 I_z/(2 C_r L), 6 % of a road car.
-  const double care = is_heading ? 0.03 : 0.1;
-  add(DriveSuspect::kYawRate, "yaw rate against heading", std::move(against),
+  Tolerance tolerance = estimation::info_of(Check::kYawRateScale).tolerance;
+  if (!is_heading) tolerance.low = 0.9, tolerance.high = 1.1;
+  add(DriveSuspect::kYawRate, Check::kYawRateScale, std::move(against),
       gain({.reading = yaw_rate_, .truth = rate, .others = {derivative(rate)}}), kLeastYawRate, powers(0, 0, 1, 0, 0),
-      Tolerance::about(1.0, care, 0.15));
+      tolerance);
 }
 
 void Relations::compare_speed() {
   const GridSeries speed = by_position().first;
   if (speed.empty()) return;
-  add(DriveSuspect::kSpeed, "speed against positions", "the speed of the positions",
-      gain({.reading = speed_, .truth = speed, .with_bias = false}), 1.0, powers(0, 1, 0, 0, 0),
-      Tolerance::about(1.0, 0.03, 0.15));
+  add(DriveSuspect::kSpeed, Check::kSpeedScale, "the speed of the positions",
+      gain({.reading = speed_, .truth = speed, .with_bias = false}), 1.0, powers(0, 1, 0, 0, 0));
 }
 
 void Relations::compare_accel_y() {
@@ -174,18 +175,18 @@ void Relations::compare_accel_y() {
   // v' of the sideslip, which follows the yaw rate: first order in the frequency, then second.
   std::vector<GridSeries> others{yaw_acceleration_, derivative(yaw_acceleration_)};
   if (speed_varies_) others.push_back(product(yaw_acceleration_, product(speed_, speed_)));
-  add(DriveSuspect::kAccelY, kLateralAcceleration.data(), "yaw_rate x speed",
+  add(DriveSuspect::kAccelY, Check::kLateralAcceleration, "yaw_rate x speed",
       gain({.reading = accel.value, .truth = turning, .others = std::move(others)}), kLeastAcceleration,
-      powers(0, -1, -1, 1, 0), {.low = 0.95, .high = 1.05, .lowest = 0.75, .highest = 1.5});
+      powers(0, -1, -1, 1, 0));
 }
 
 void Relations::compare_accel_x() {
   const recording::GridSignal& accel = s_[DriveSignal::kAccelX];
   if (!accel.available()) return;
   // Pitch under braking and grades are in the reading: within a quarter nothing can be said.
-  add(DriveSuspect::kAccelX, "longitudinal acceleration against speed", "the derivative of speed",
+  add(DriveSuspect::kAccelX, Check::kLongitudinalAcceleration, "the derivative of speed",
       gain({.reading = accel.value, .truth = derivative(speed_), .others = {product(yaw_rate_, yaw_rate_)}}),
-      kLeastAcceleration, powers(0, -1, 0, 0, 1), {.low = 0.85, .high = 1.25, .lowest = 0.5, .highest = 2.0});
+      kLeastAcceleration, powers(0, -1, 0, 0, 1));
 }
 
 void Relations::compare_steer() {
@@ -201,11 +202,10 @@ void Relations::compare_steer() {
   }
   const std::span<const bool> linear(used.get(), turning.size());
   const Powers power = powers(1, 1, -1, 0, 0);
-  constexpr Tolerance kSteering{.low = 0.9, .high = 1.1, .lowest = 0.6, .highest = 1.7};
   const auto whole = gain({.reading = steer.value, .truth = kinematic, .others = {yaw_acceleration_}}, linear);
   if (!whole) return;
-  add(DriveSuspect::kSteer, "steering against turning", "a wheelbase x yaw_rate / speed and understeer imply", whole,
-      kLeastSteer, power, kSteering);
+  add(DriveSuspect::kSteer, Check::kSteeringScale, "wheelbase x yaw_rate / speed with understeer", whole, kLeastSteer,
+      power);
   DriveRelation& relation = out_.back();
   // All understeer that vehicles have; what reads against the turning does so for any of it.
   const double curving = typical_speed_ * typical_speed_ / wheelbase_;
@@ -241,11 +241,9 @@ bool explains(std::span<const DriveRelation> relations, DriveSuspect sensor, dou
   });
 }
 
-bool is_uncorrelated(const DriveRelation& relation) {
-  return relation.strong && relation.correlation * relation.correlation < kCommonCare;
-}
-
 }  // namespace
+
+bool DriveRelation::unrelated() const { return strong && correlation * correlation < kCommonCare; }
 
 Outcome DriveRelation::outcome() const {
   if (!strong) return Outcome::kPassed;
@@ -267,7 +265,7 @@ std::vector<DriveCulprit> culprits(std::span<const DriveRelation> relations) {
   for (const DriveRelation& relation : relations)
     if (relation.outcome() != Outcome::kPassed) off.push_back(&relation);
   if (off.empty()) return {};
-  const bool unrelated = std::ranges::any_of(off, [](const DriveRelation* r) { return is_uncorrelated(*r); });
+  const bool unrelated = std::ranges::any_of(off, [](const DriveRelation* r) { return r->unrelated(); });
   const DriveRelation& sharpest = **std::ranges::min_element(
       off, {}, [](const DriveRelation* r) { return (r->high - r->low) / std::abs(r->middle()); });
   std::vector<DriveCulprit> found;

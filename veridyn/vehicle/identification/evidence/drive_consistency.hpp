@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "veridyn/core/enum_array.hpp"
-#include "veridyn/estimation/judgement/evidence.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/recording/channel_map.hpp"
 #include "veridyn/vehicle/identification/signals/drive_signals.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
@@ -26,15 +26,12 @@ using PerDriveSuspect = EnumArray<DriveSuspect, T, kDriveSuspects>;
 inline constexpr PerDriveSuspect<std::string_view> kDriveSuspectNames{"steer", "speed", "yaw_rate", "accel_y",
                                                                       "accel_x"};
 
-/// The relation of the lateral accelerometer.
-inline constexpr std::string_view kLateralAcceleration = "lateral acceleration against turning";
-
 /// What one sensor reads over what others imply; 1 where all are right.
 struct DriveRelation {
   DriveSuspect sensor = DriveSuspect::kYawRate;  ///< the sensor that is compared
-  std::string name = {};                         ///< "yaw rate against heading"
-  std::string against = {};                      ///< "the rate of the heading"
-  double low = 0.0, high = 0.0;                  ///< range of the ratio, three standard errors included
+  estimation::Check check = {};
+  std::string against = {};      ///< "the rate of the heading"
+  double low = 0.0, high = 0.0;  ///< range of the ratio, three standard errors included
   double correlation = 1.0;
   bool strong = false;    ///< the motion is large enough to compare
   bool verified = false;  ///< the range is narrow enough to verify a scale
@@ -42,6 +39,8 @@ struct DriveRelation {
   PerDriveSuspect<int> power{};
   estimation::Tolerance tolerance = {};
 
+  /// Strong signals that are not the same motion.
+  [[nodiscard]] bool unrelated() const;
   [[nodiscard]] double middle() const { return 0.5 * (low + high); }
   /// Passed, with care, failed: by range and correlation; passed where the motion is not strong.
   [[nodiscard]] estimation::Outcome outcome() const;

@@ -9,54 +9,39 @@
 #include <optional>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/deg_per_g.hpp"
 #include "veridyn/numerics/statistics.hpp"
 #include "veridyn/recording/sample_evidence.hpp"
 #include "veridyn/recording/sensor_matrix.hpp"
 #include "veridyn/recording/signal_gain.hpp"
-#include "veridyn/recording/time_order.hpp"
+#include "veridyn/recording/stamp_evidence.hpp"
 
 namespace veridyn::vehicle {
 namespace {
 
+using estimation::Cause;
+using estimation::Check;
 using estimation::Evidence;
-using estimation::kAllPurposes;
 using estimation::Outcome;
-using estimation::outcome_of;
 using estimation::Purpose;
-using estimation::Tolerance;
+using estimation::row_of;
 
 std::string_view name_of(DriveSuspect sensor) { return kDriveSuspectNames[sensor]; }
 
-std::string ratio_text(const DriveRelation& r) {
-  const double half = 0.5 * (r.high - r.low);
-  return half < 0.2 * std::abs(r.middle()) ? fmt::format("{:.3g} +- {:.1g}", r.middle(), half)
-                                           : fmt::format("{:.2g} to {:.2g}", r.low, r.high);
+std::string names_of(const std::vector<DriveCulprit>& suspects, std::string_view separator) {
+  std::vector<std::string_view> names;
+  for (const DriveCulprit& culprit : suspects) names.push_back(name_of(culprit.sensor));
+  return fmt::format("{}", fmt::join(names, separator));
 }
 
-/// What a sensor does that reads `factor` times the truth.
-std::string fault_text(const DriveCulprit& culprit) {
-  const std::string_view name = name_of(culprit.sensor);
+/// The unit that explains a sensor's factor; empty: none does.
+std::string unit_of(const DriveCulprit& culprit) {
   const double size = std::abs(culprit.factor);
-  if (!std::isfinite(culprit.factor)) return fmt::format("{} shows another motion", name);
   // What the sideslip's approximation leaves of a gain.
   constexpr double kModelError = 0.03;
   // Ratios of steering gears from rack to hand wheel.
   const bool hand_wheel = culprit.sensor == DriveSuspect::kSteer && size > 8.0 && size < 30.0;
-  const std::string unit = hand_wheel ? "the hand wheel's angle taken for the road wheels'"
-                                      : recording::mistaken_unit(size, culprit.doubt + kModelError);
-  return fmt::format("{} reads {:.3g} times the truth{}{}", name, culprit.factor,
-                     culprit.factor < 0.0 ? ": its sign is reversed" : "", unit.empty() ? "" : ": " + unit);
-}
-
-std::string advice_for(const std::vector<DriveCulprit>& suspects, const DriveRelation& relation) {
-  std::vector<std::string_view> names;
-  for (const DriveCulprit& culprit : suspects) names.push_back(name_of(culprit.sensor));
-  if (names.empty()) names.push_back(name_of(relation.sensor));
-  std::string advice = fmt::format("check unit, sign and scale of {} in [data.map]", fmt::join(names, ", "));
-  if (std::ranges::find(names, name_of(DriveSuspect::kSteer)) != names.end())
-    advice += ", signals.steering_ratio and the wheelbase a + b";
-  return advice;
+  return hand_wheel ? "the hand wheel's angle taken for the road wheels'"
+                    : recording::mistaken_unit(size, culprit.doubt + kModelError);
 }
 
 /// A body that leans outward shows part of gravity as lateral acceleration.
@@ -65,41 +50,47 @@ bool may_lean(const DriveRelation& r, bool gravity_removed) {
   return r.sensor == DriveSuspect::kAccelY && !gravity_removed && r.low > 1.0 && r.middle() < kMostByLean;
 }
 
+/// Whether the lean that the model knows is what accel_y reads too much.
+bool is_explained(const DriveRelation& r, std::optional<double> roll_gradient, double gravity) {
+  // What the sideslip's approximation leaves of the ratio.
+  constexpr double kModelError = 0.05;
+  return r.sensor == DriveSuspect::kAccelY && roll_gradient && r.outcome() == Outcome::kCare &&
+         std::abs(r.middle() - 1.0 - gravity * *roll_gradient) < kModelError;
+}
+
+Cause cause_of(const DriveRelation& r, const std::vector<DriveCulprit>& suspects, bool gravity_removed) {
+  if (may_lean(r, gravity_removed)) return Cause::kGravity;
+  if (r.unrelated()) return Cause::kAxis;
+  if (suspects.size() != 1) return Cause::kNone;
+  const DriveCulprit& culprit = suspects.front();
+  if (!std::isfinite(culprit.factor)) return Cause::kAxis;
+  if (!unit_of(culprit).empty()) return Cause::kUnit;
+  return culprit.factor < 0.0 ? Cause::kSign : Cause::kScale;
+}
+
 Evidence relation_row(const DriveRelation& r, const std::vector<DriveCulprit>& suspects, bool gravity_removed,
-                      double gravity) {
-  std::vector<std::string_view> names;
-  for (const DriveCulprit& culprit : suspects) names.push_back(name_of(culprit.sensor));
-  Evidence row{.name = r.name,
-               .about = std::string(name_of(r.sensor)),
-               .outcome = r.outcome(),
-               .value = r.middle(),
-               .limit = r.tolerance.high,
-               .scale = "reading over truth",
-               .bears_on = r.sensor == DriveSuspect::kAccelX ? estimation::Purposes(Purpose::kData) : kAllPurposes};
-  row.text = fmt::format("{} reads {} times what {}", name_of(r.sensor), ratio_text(r),
-                         r.sensor == DriveSuspect::kSteer ? r.against : fmt::format("{} says", r.against));
-  if (row.outcome == Outcome::kPassed) {
-    if (!r.verified) {
-      row.outcome = Outcome::kNotVerified;
-      row.text += r.strong ? ": its scale is verified no better than that" : ": too little motion to verify its scale";
-    }
-    return row;
+                      double gravity, std::optional<double> roll_gradient) {
+  const bool leans = is_explained(r, roll_gradient, gravity);
+  Outcome outcome = leans ? Outcome::kPassed : r.outcome();
+  if (!leans && outcome == Outcome::kPassed && !r.verified) outcome = Outcome::kNotVerified;
+  Evidence row = row_of(r.check, std::string(name_of(r.sensor)), outcome);
+  row.value = r.middle();
+  row.sigma = (r.high - r.low) / (2.0 * estimation::kBeyondChance);
+  const bool failed = outcome == Outcome::kFailed, high = r.middle() > 1.0;
+  row.limit = failed ? (high ? r.tolerance.highest : r.tolerance.lowest) : (high ? r.tolerance.high : r.tolerance.low);
+  if (leans) {
+    row.cause = Cause::kGravity;
+  } else if (!row.passed()) {
+    row.cause = cause_of(r, suspects, gravity_removed);
+  } else if (!r.strong) {
+    row.cause = Cause::kExcitation;
   }
-  if (!names.empty()) row.about = fmt::format("{}", fmt::join(names, ", "));
-  row.advice = advice_for(suspects, r);
-  if (r.correlation * r.correlation < 0.6 && r.strong)
-    row.text += fmt::format(" and hardly moves with it (correlation {:.2f})", r.correlation);
-  if (may_lean(r, gravity_removed)) {
-    const double gradient = (r.middle() - 1.0) / gravity;
-    row.text +=
-        fmt::format(": a body that leans by {:.1f} deg/g would show that, or a wrong scale", deg_per_g(gradient));
-    row.advice = fmt::format("record roll, or give signals.roll_gradient (here {:.4f}), or check the scale of accel_y",
-                             gradient);
-  } else if (suspects.size() == 1) {
-    row.text += fmt::format(": {}", fault_text(suspects.front()));
-  } else if (!suspects.empty()) {
-    row.text += fmt::format(": {} is wrong", fmt::join(names, " or "));
-  }
+  const double gradient = leans ? *roll_gradient : (r.middle() - 1.0) / gravity;
+  row.with("sensor", std::string(name_of(r.sensor))).with("against", r.against).with("low", r.low).with("high", r.high);
+  row.with("correlation", r.correlation).with("gradient", gradient).with("lean", gradient * gravity);
+  row.with("suspects", suspects.empty() ? std::string("one of the sensors") : names_of(suspects, " or "));
+  if (!row.passed() && !suspects.empty()) row.about = names_of(suspects, ", ");
+  if (suspects.size() == 1) row.with("factor", suspects.front().factor).with("units", unit_of(suspects.front()));
   return row;
 }
 
@@ -118,7 +109,9 @@ std::vector<Evidence> drive_sample_rows(const Recording& recording, const DriveS
                                                                 {"wheel_speed_rr", "speed", recording::Rest::kLongOnly},
                                                                 {"steer", "steer", recording::Rest::kNone},
                                                                 {"steering_wheel", "steer", recording::Rest::kNone}};
-  return recording::sample_evidence(recording, kChannels, segments.usable);
+  std::vector<Evidence> rows = recording::sample_evidence(recording, kChannels, segments.usable);
+  std::ranges::move(recording::stamp_evidence(recording, kChannels, segments.usable), std::back_inserter(rows));
+  return rows;
 }
 
 /// Mean of the vertical specific force over g: unit, sign and frame of the accelerometer.
@@ -129,26 +122,17 @@ std::optional<Evidence> gravity_row(const Recording& recording, double gravity) 
   std::ranges::copy_if(accel->value, std::back_inserter(values), [](double v) { return std::isfinite(v); });
   if (values.empty()) return std::nullopt;
   const double ratio = numerics::median(values) / gravity;
-  Evidence row{.name = "gravity",
-               .about = "accel_z",
-               .outcome = outcome_of(ratio, 0.0, Tolerance::about(1.0, 0.05, 0.3)),
-               .value = ratio,
-               .limit = 0.05,
-               .scale = "accel_z over g",
-               .text = fmt::format("accel_z is {:.3g} g in the mean, upward", ratio),
-               .bears_on = Purpose::kData};
-  if (!row.passed()) {
-    const std::string unit = recording::mistaken_unit(std::abs(ratio));
-    row.text += fmt::format(", not 1{}{}", ratio < 0.0 ? ": its sign or the frame is wrong" : "",
-                            unit.empty() ? "" : ": " + unit);
-    row.advice = "check unit, sign and data.frame of the accelerometer, and whether it is mounted level";
-  }
-  return row;
+  Evidence row = row_of(Check::kGravity, "accel_z", ratio);
+  if (row.passed()) return row;
+  const std::string unit = recording::mistaken_unit(std::abs(ratio));
+  row.cause = ratio < 0.0 ? Cause::kSign : unit.empty() ? Cause::kScale : Cause::kUnit;
+  return std::move(row).with("units", unit);
 }
 
 /// A vehicle whose wheels stand still comes to a steady turn; one that turns on does not stand still.
 std::optional<Evidence> frozen_steering(const DriveSignals& signals, std::span<const TimeSpan> spans) {
-  constexpr double kLongest_s = 2.0, kSettles_s = 1.0;
+  const double longest_s = estimation::info_of(Check::kFrozenSteering).tolerance.high;
+  constexpr double kSettles_s = 1.0;
   /// Of the yaw rate's scatter over the drive.
   constexpr double kLimit = 0.3;
   const std::vector<double>& steer = signals[DriveSignal::kSteer].value;
@@ -171,7 +155,7 @@ std::optional<Evidence> frozen_steering(const DriveSignals& signals, std::span<c
       const double length = static_cast<double>(end - k) * signals.grid.step;
       total += length;
       const auto settled = k + static_cast<std::size_t>(kSettles_s / signals.grid.step);
-      if (length > kLongest_s && scatter(settled, end) > kLimit * all) {
+      if (length > longest_s && scatter(settled, end) > kLimit * all) {
         if (moving == 0.0) at = signals.grid.at(k);
         moving += length;
       }
@@ -179,124 +163,70 @@ std::optional<Evidence> frozen_steering(const DriveSignals& signals, std::span<c
     }
   }
   if (moving == 0.0) return std::nullopt;
-  return Evidence{.name = "steering that stands still",
-                  .about = "steer",
-                  .outcome = moving > 0.02 * total ? Outcome::kFailed : Outcome::kCare,
-                  .value = moving,
-                  .limit = kLongest_s,
-                  .scale = "s",
-                  .text = fmt::format("steer does not move for {:.1f} s (from {:.1f} s on) in which the vehicle turns "
-                                      "now this way, now that way",
-                                      moving, at),
-                  .bears_on = kAllPurposes,
-                  .advice = "leave that stretch out: segments.identification and holdout_spans"};
+  Evidence row = row_of(Check::kFrozenSteering, "steer", moving > 0.02 * total ? Outcome::kFailed : Outcome::kCare);
+  row.cause = Cause::kFrozen;
+  row.value = moving;
+  row.limit = longest_s;
+  return std::move(row).with("begin", at);
 }
 
-/// Tyres build up their force over half a metre of travel, which is up to 0.05 s late; a rolling body in the
-/// accelerometer makes it seem up to 0.04 s early. The search scatters by 0.01 s.
-constexpr double kEarly_s = 0.07;
-constexpr Tolerance kLate{.low = -kEarly_s, .high = 0.07, .lowest = -kInfinity, .highest = 0.4};
-/// Of the delay that the identified model finds; a millisecond moves I_z by 1 to 2 %. Beyond three standard errors of
-/// it, none of 48 simulated drives without a delay is raised; of those with a steering 10 or 20 ms late all 48 of
-/// bicycles and of one car that rolls, 22 of 48 of cars that roll on tyres that lag
-/// (tests/vehicle/campaign/steering_delay_test.cpp).
-constexpr Tolerance kLateForModel{.low = -0.004, .high = 0.004, .lowest = -0.02, .highest = 0.02};
-
-std::vector<Evidence> time_rows(const DriveSignals& signals, std::span<const TimeSpan> spans,
-                                const Progress& progress) {
-  if (!signals[DriveSignal::kSteer].available()) return {};
-  const recording::DelayReport report = steering_delay(signals, spans, progress);
-  const recording::TimeOrder order{.early_s = kEarly_s, .is_control = true};
-  const bool determined = report.correlation > 0.0 && !report.text.starts_with("not determined");
-  if (determined && recording::is_early(report, order)) {
-    Evidence early = recording::early_row(report, order);
-    early.advice =
-        fmt::format("check the stamps of steer; data.map takes a delay: steer = {{ ..., delay = \"{:.0f} ms\" }}",
-                    -1000.0 * report.delay_s);
-    return {std::move(early)};
-  }
-  Evidence row{.name = std::string(kOrderInTime),
-               .about = "steer, yaw_rate",
-               .outcome = determined ? outcome_of(report.delay_s, 0.0, kLate) : Outcome::kNotVerified,
-               .value = determined ? report.delay_s : kNaN,
-               .limit = kLate.high,
-               .scale = "s",
-               .text = determined ? fmt::format("the vehicle answers the steering after {:.3f} s", report.delay_s)
-                                  : "how soon the vehicle answers the steering cannot be told from this recording",
-               .bears_on = kAllPurposes};
-  if (!row.passed()) {
-    row.text += ", later than tyres do: yaw_rate is late, or steer early";
-    row.advice =
-        "check the stamps of yaw_rate and steer; data.map takes a delay: yaw_rate = { ..., delay = \"50 ms\" }";
-  }
-  return {std::move(row)};
+/// Of a row that found one of the two late: which, and by how much.
+Evidence with_late(Evidence row) {
+  row.about = row.value < 0.0 ? "steer" : "yaw_rate";
+  if (!row.passed()) row.cause = Cause::kDelay;
+  return std::move(row).with("late", std::abs(row.value));
 }
 
-/// What is taken as it is given.
-std::vector<Evidence> not_shown(const VehicleParameters<double>& vehicle) {
-  const auto row = [](const char* name, std::string text) {
-    return Evidence{.name = name,
-                    .about = name,
-                    .outcome = Outcome::kNotVerified,
-                    .value = kNaN,
-                    .limit = kNaN,
-                    .text = std::move(text),
-                    .bears_on = kAllPurposes};
-  };
-  return {
-      row("mass", fmt::format("a drive shows forces over mass: C_f, C_r and I_z are as right as the mass of {:g} kg",
-                              vehicle.mass)),
-      row("centre of gravity",
-          fmt::format("a drive hardly shows where between the axles the centre of gravity is: a = {:g} m and b = "
-                      "{:g} m are taken as given",
-                      vehicle.a, vehicle.b))};
+Evidence row_by_signals(const recording::DelayReport& report, bool misled) {
+  const bool determined = report.correlation > 0.0 && report.determined();
+  const Outcome outcome = determined ? estimation::outcome_of(report.delay_s, report.sigma_s,
+                                                              estimation::info_of(Check::kSteeringOrder).tolerance)
+                                     : Outcome::kPassed;
+  // Signals alone tell a delay to no better than what tyres and a lean make.
+  if (outcome != Outcome::kPassed && !misled)
+    return with_late(row_of(Check::kSteeringOrder, "", report.delay_s, report.sigma_s));
+  Evidence row = row_of(Check::kSteeringOrder, "steer, yaw_rate", Outcome::kNotVerified);
+  row.cause = !determined ? Cause::kExcitation : outcome != Outcome::kPassed ? Cause::kMissingTerm : Cause::kNone;
+  row.value = determined ? report.delay_s : kNaN;
+  row.sigma = report.sigma_s;
+  row.limit = estimation::info_of(Check::kSteeringOrder).tolerance.high;
+  return row;
 }
 
 }  // namespace
 
-std::vector<Evidence> relation_rows(std::span<const DriveRelation> relations, bool gravity_removed, double gravity) {
+std::vector<Evidence> relation_rows(std::span<const DriveRelation> relations, bool gravity_removed, double gravity,
+                                    std::optional<double> roll_gradient) {
   const std::vector<DriveCulprit> suspects = culprits(relations);
   std::vector<Evidence> rows;
   for (const DriveRelation& relation : relations)
-    rows.push_back(relation_row(relation, suspects, gravity_removed, gravity));
+    rows.push_back(relation_row(relation, suspects, gravity_removed, gravity, roll_gradient));
   return rows;
 }
 
-Evidence explained_by_roll(Evidence row, const estimation::Parameter* roll_gradient, double gravity) {
-  if (roll_gradient == nullptr || row.name != kLateralAcceleration || row.outcome == Outcome::kFailed) return row;
-  if (row.passed()) return row;
-  const double lean = gravity * roll_gradient->value;
-  // What the sideslip's approximation leaves of the ratio.
-  constexpr double kModelError = 0.05;
-  if (!(std::abs(row.value - 1.0 - lean) < kModelError)) return row;
-  row.outcome = Outcome::kPassed;
-  row.text = fmt::format(
-      "accel_y reads {:.3g} times what yaw_rate x speed says, as that of a body does which leans by "
-      "{:.1f} deg/g",
-      row.value, deg_per_g(roll_gradient->value));
-  row.advice.clear();
-  return row;
+Evidence steering_row(const recording::DelayReport& by_signals, const KnownByModel& known) {
+  if (!known.steer_delay || !std::isfinite(known.steer_delay->sigma))
+    return row_by_signals(by_signals, known.changed || known.roll_gradient.value_or(0.0) != 0.0);
+  return with_late(row_of(Check::kSteeringDelay, "", known.steer_delay->value, known.steer_delay->sigma));
 }
 
-Evidence in_time_of_model(Evidence row, const estimation::Parameter* steer_delay) {
-  if (steer_delay == nullptr || row.name != kOrderInTime || !std::isfinite(steer_delay->sigma)) return row;
-  row.about = "steer, yaw_rate";
-  row.value = steer_delay->value;
-  row.limit = kLateForModel.high;
-  row.scale = "s";
-  row.outcome = outcome_of(steer_delay->value, steer_delay->sigma, kLateForModel);
-  row.text =
-      fmt::format("the identified vehicle answers the steering {:.3f} +- {:.3f} s {} than its model",
-                  std::abs(steer_delay->value), steer_delay->sigma, steer_delay->value < 0.0 ? "earlier" : "later");
-  if (row.passed()) {
-    row.advice.clear();
-  } else {
-    row.advice = fmt::format(
-        "measure how late {0} is recorded, and give it: data.map takes a delay, {0} = {{ ..., delay = \"20 ms\" }}; or "
-        "let it be estimated: identify.estimate with \"steer_delay\"",
-        steer_delay->value < 0.0 ? "steer" : "yaw_rate");
-  }
-  return row;
+bool contradicts_itself(const DriveFindings& findings) {
+  return std::ranges::any_of(recording_rows(findings), [](const Evidence& row) {
+    return row.outcome == Outcome::kFailed && row.bears_on.contains(Purpose::kParameters);
+  });
+}
+
+std::vector<Evidence> recording_rows(const DriveFindings& findings, const KnownByModel& known) {
+  std::vector<Evidence> rows = findings.rows;
+  for (Evidence& row :
+       relation_rows(findings.relations, findings.gravity_removed, findings.gravity, known.roll_gradient))
+    rows.push_back(std::move(row));
+  if (findings.steering_delay) rows.push_back(steering_row(*findings.steering_delay, known));
+  const VehicleParameters<double>& p = findings.vehicle;
+  rows.push_back(row_of(Check::kGivenMass, "mass", Outcome::kNotVerified).with("mass", p.mass));
+  rows.push_back(
+      row_of(Check::kGivenCentreOfGravity, "centre of gravity", Outcome::kNotVerified).with("a", p.a).with("b", p.b));
+  return rows;
 }
 
 recording::DelayReport steering_delay(const DriveSignals& signals, std::span<const TimeSpan> spans,
@@ -329,20 +259,18 @@ recording::DelayReport steering_delay(const DriveSignals& signals, std::span<con
                                  signals.grid.step, options, progress, "steering");
 }
 
-std::vector<Evidence> drive_evidence(const recording::MappedRecording& mapped, const DriveSignals& signals,
-                                     const DriveSegments& segments, const VehicleParameters<double>& vehicle,
-                                     const DriveSignalOptions& options, const Progress& progress) {
-  std::vector<Evidence> rows = drive_sample_rows(mapped.recording, segments);
-  const auto add = [&](std::vector<Evidence> more) {
-    rows.insert(rows.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
-  };
-  add(relation_rows(drive_relations(mapped, signals, segments.usable, vehicle.wheelbase()), signals.gravity_removed,
-                    options.gravity));
-  if (auto row = gravity_row(mapped.recording, options.gravity)) rows.push_back(std::move(*row));
-  if (auto row = frozen_steering(signals, segments.usable)) rows.push_back(std::move(*row));
-  add(time_rows(signals, segments.usable, progress));
-  add(not_shown(vehicle));
-  return rows;
+DriveFindings drive_findings(const recording::MappedRecording& mapped, const DriveSignals& signals,
+                             const DriveSegments& segments, const VehicleParameters<double>& vehicle,
+                             const DriveSignalOptions& options, const Progress& progress) {
+  DriveFindings out{.rows = drive_sample_rows(mapped.recording, segments),
+                    .relations = drive_relations(mapped, signals, segments.usable, vehicle.wheelbase()),
+                    .vehicle = vehicle,
+                    .gravity_removed = signals.gravity_removed,
+                    .gravity = options.gravity};
+  if (auto row = gravity_row(mapped.recording, options.gravity)) out.rows.push_back(std::move(*row));
+  if (auto row = frozen_steering(signals, segments.usable)) out.rows.push_back(std::move(*row));
+  if (signals[DriveSignal::kSteer].available()) out.steering_delay = steering_delay(signals, segments.usable, progress);
+  return out;
 }
 
 }  // namespace veridyn::vehicle

@@ -1,9 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/estimation/judgement/evidence.hpp"
 #include "veridyn/estimation/result/parameter.hpp"
@@ -14,30 +15,49 @@
 
 namespace veridyn::vehicle {
 
-/// Does the recording of a drive agree with itself and with physics? Rows of the samples, of the relations between the
-/// sensors (`drive_relations`), of gravity, of a steering that stands still in a turn, of the order in time; and, "not
-/// verified", of what no drive shows: mass and the place of the centre of gravity.
-[[nodiscard]] std::vector<estimation::Evidence> drive_evidence(
-    const recording::MappedRecording& mapped, const DriveSignals& signals, const DriveSegments& segments,
-    const VehicleParameters<double>& vehicle, const DriveSignalOptions& options, const Progress& progress);
+/// What the recording of a drive says of itself, before any model.
+struct DriveFindings {
+  std::vector<estimation::Evidence> rows = {};  ///< which no model changes
+  std::vector<DriveRelation> relations = {};
+  std::optional<recording::DelayReport> steering_delay = {};  ///< by signals; nothing without steering
+  VehicleParameters<double> vehicle = {};                     ///< mass, a and b are taken as given
+  bool gravity_removed = false;                               ///< from accel_y
+  double gravity = kGravity;
+};
 
-/// The rows of the relations: which sensor is wrong and by how much, where one alone explains what is off.
+/// Does the recording of a drive agree with itself and with physics? The samples, the relations between the sensors
+/// (`drive_relations`), gravity, a steering that stands still in a turn, the order in time.
+[[nodiscard]] DriveFindings drive_findings(const recording::MappedRecording& mapped, const DriveSignals& signals,
+                                           const DriveSegments& segments, const VehicleParameters<double>& vehicle,
+                                           const DriveSignalOptions& options, const Progress& progress);
+
+/// Whether it contradicts itself, whatever a model would say, in what parameters rest on.
+[[nodiscard]] bool contradicts_itself(const DriveFindings& findings);
+
+/// What the model of a drive knows of its recording.
+struct KnownByModel {
+  /// How far the body leans. The structure with roll is taken only where it explains the drive better than a wrong
+  /// scale of the accelerometer does.
+  std::optional<double> roll_gradient = {};
+  /// How late the steering is, where the model is left free to say so. What compares signals alone takes a body's lean,
+  /// or noise of slow steering, for a delay.
+  std::optional<estimation::Parameter> steer_delay = {};
+  bool changed = false;  ///< the vehicle did not stay what it was, so that signals alone show no delay
+};
+
+/// The rows of a drive; and, "not verified", of what no drive shows: mass and the place of the centre of gravity.
+[[nodiscard]] std::vector<estimation::Evidence> recording_rows(const DriveFindings& findings,
+                                                               const KnownByModel& known = {});
+
+/// The rows of the relations: which sensor is wrong and by how much, where one alone explains what is off. That of the
+/// lateral acceleration passes where the lean that the model knows explains it.
 [[nodiscard]] std::vector<estimation::Evidence> relation_rows(std::span<const DriveRelation> relations,
-                                                              bool gravity_removed, double gravity);
+                                                              bool gravity_removed, double gravity,
+                                                              std::optional<double> roll_gradient = std::nullopt);
 
-/// The row of the lateral acceleration against turning, passed where the roll gradient of the identified model explains
-/// it; any other as it is. `roll_gradient` may be null. The structure with roll is taken only where it explains the
-/// drive better than a wrong scale of the accelerometer does.
-[[nodiscard]] estimation::Evidence explained_by_roll(estimation::Evidence row,
-                                                     const estimation::Parameter* roll_gradient, double gravity);
-
-/// The row of the order in time.
-inline constexpr std::string_view kOrderInTime = "order in time";
-
-/// The row of the order in time by the delay of the steering that the identified model finds when it is left free; any
-/// other row, or without a delay, as it is. What compares signals alone takes a body's lean, or noise of slow steering,
-/// for a delay.
-[[nodiscard]] estimation::Evidence in_time_of_model(estimation::Evidence row, const estimation::Parameter* steer_delay);
+/// The row of the delay between steering and turning: by the model where that says it, else by signals, which never
+/// verify it.
+[[nodiscard]] estimation::Evidence steering_row(const recording::DelayReport& by_signals, const KnownByModel& known);
 
 /// How late the yaw acceleration follows the steering, where the drive shows it.
 [[nodiscard]] recording::DelayReport steering_delay(const DriveSignals& signals, std::span<const TimeSpan> spans,

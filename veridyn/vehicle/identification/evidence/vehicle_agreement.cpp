@@ -1,21 +1,16 @@
 #include "veridyn/vehicle/identification/evidence/vehicle_agreement.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
 #include "veridyn/core/index.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/vehicle/identification/fit/drive_parametric_model.hpp"
 
 namespace veridyn::vehicle {
 namespace {
 
-/// Unknowns that are the vehicle's, not the day's.
-constexpr std::array kOfTheVehicle{DriveUnknown::kCf, DriveUnknown::kCr, DriveUnknown::kIz, DriveUnknown::kA,
-                                   DriveUnknown::kMu};
 /// Longest correlation of residuals that is looked for.
 constexpr double kLongestMemory_s = 2.0;
 /// Parts that differ by less are one vehicle whose intervals were too narrow.
@@ -29,7 +24,7 @@ PartsAgreement compared(const Eigen::VectorXd& here, const Eigen::VectorXd& ther
 }
 
 std::optional<PartsAgreement> by_output_error(const VehicleProblem& problem, const OutputErrorResult& here,
-                                              Progress& progress) {
+                                              double model_error, Progress& progress) {
   VehicleParameters<double> start = problem.start;
   start.C_f = here.raw.theta(0);
   start.C_r = here.raw.theta(1);
@@ -55,7 +50,7 @@ std::optional<PartsAgreement> by_output_error(const VehicleProblem& problem, con
       there.termination != estimation::OutputErrorTermination::kRelaxations)
     return std::nullopt;
   std::vector<Eigen::Index> both;
-  for (const DriveUnknown unknown : kOfTheVehicle) {
+  for (const DriveUnknown unknown : kVehicleUnknowns) {
     const auto i = static_cast<Eigen::Index>(unknown);
     const auto determined = [i](const estimation::OutputErrorEstimate& e) {
       return e.covariance(i, i) > 0.0 && std::isfinite(e.covariance(i, i));
@@ -63,7 +58,7 @@ std::optional<PartsAgreement> by_output_error(const VehicleProblem& problem, con
     if (determined(here.raw) && determined(there)) both.push_back(i);
   }
   if (both.empty()) return std::nullopt;
-  const Eigen::MatrixXd covariance = here.raw.covariance + there.covariance;
+  const Eigen::MatrixXd covariance = model_error * (here.raw.covariance + there.covariance);
   return compared(here.raw.theta(both), there.theta(both), covariance(both, both));
 }
 
@@ -71,10 +66,11 @@ std::optional<PartsAgreement> by_output_error(const VehicleProblem& problem, con
 
 std::optional<PartsAgreement> compare_parts(const VehicleProblem& problem, VehicleMethod chosen,
                                             const EquationErrorEstimates* equation_error,
-                                            const OutputErrorResult* output_error, Progress& progress) {
+                                            const OutputErrorResult* output_error, double model_error,
+                                            Progress& progress) {
   if (problem.segments.holdout.empty()) return std::nullopt;
   if (chosen == VehicleMethod::kOutputError && output_error != nullptr)
-    return by_output_error(problem, *output_error, progress);
+    return by_output_error(problem, *output_error, model_error, progress);
   if (equation_error == nullptr) return std::nullopt;
   const DriveRegressionResult there = regress(problem, problem.segments.holdout, problem.start);
   for (const AxleEstimate& axle : equation_error->regression.axles) {
@@ -92,26 +88,15 @@ double variance_factor(const std::optional<PartsAgreement>& parts) {
 
 estimation::Evidence parts_row(const PartsAgreement& parts, double contradiction_level) {
   using estimation::Outcome;
-  const double factor = std::sqrt(std::max(1.0, parts.agreement.ratio));
-  const bool agree = parts.agreement.p >= contradiction_level;
-  estimation::Evidence row{.name = "agreement of data parts",
-                           .outcome = agree                                      ? Outcome::kPassed
-                                      : parts.largest_difference <= kSameVehicle ? Outcome::kCare
-                                                                                 : Outcome::kFailed,
-                           .value = parts.agreement.p,
-                           .limit = contradiction_level,
-                           .scale = "p",
-                           .bears_on = estimation::Purpose::kParameters};
-  row.text = agree ? fmt::format("identification and hold-out data, estimated separately, agree (p = {:.2g})",
-                                 parts.agreement.p)
-                   : fmt::format(
-                         "estimates from two parts of the drive contradict each other beyond their error bars "
-                         "(p = {:.1e}) and differ by up to {:.0f} %: the vehicle, the road or the range of "
-                         "motion is not the same in both",
-                         parts.agreement.p, 100.0 * parts.largest_difference);
-  if (factor > 1.0) row.text += fmt::format("; intervals are widened by {:.2f} for their scatter", factor);
-  if (!agree) row.advice = "identify gentle and hard driving separately, or drive the same manoeuvres twice";
-  return row;
+  const Outcome otherwise = parts.largest_difference <= kSameVehicle ? Outcome::kCare : Outcome::kFailed;
+  estimation::Evidence row = estimation::row_of(
+      estimation::Check::kPartsOfDrive, "", estimation::passed_or(parts.agreement.p >= contradiction_level, otherwise));
+  if (!row.passed()) row.cause = estimation::Cause::kOtherSubject;
+  row.value = parts.agreement.p;
+  row.limit = contradiction_level;
+  return std::move(row)
+      .with("difference", parts.largest_difference)
+      .with("widened", std::sqrt(std::max(1.0, parts.agreement.ratio)));
 }
 
 VehicleEstimate widened(VehicleEstimate estimate, double factor, double significance) {

@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "veridyn/estimation/judgement/agreement.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/vehicle/identification/evidence/drive_evidence.hpp"
+#include "veridyn/vehicle/identification/evidence/model_error.hpp"
 #include "veridyn/vehicle/identification/evidence/vehicle_plausibility.hpp"
 #include "veridyn/vehicle/identification/fit/axle_estimate.hpp"
 #include "veridyn/vehicle/identification/structure/structure_doubt.hpp"
@@ -15,6 +18,8 @@
 namespace veridyn::vehicle {
 namespace {
 
+using estimation::Cause;
+using estimation::Check;
 using estimation::Evidence;
 using estimation::Method;
 using estimation::Outcome;
@@ -22,64 +27,58 @@ using estimation::Parameter;
 using estimation::ParameterStatus;
 using estimation::passed_or;
 using estimation::Purpose;
+using estimation::row_of;
 
-/// Factor within which the noise of the sensors is known.
-constexpr double kNoiseDoubt = 2.0;
 /// Correlation of neighbouring residuals from which they count as autocorrelated.
 constexpr double kAutocorrelated = 0.3;
-/// Residual over what noise leaves, from which its autocorrelation is more than that of the inputs' noise.
-constexpr double kBeyondNoise = 1.5;
-
 double percent_explained(const estimation::PredictedQuantity& q) { return 100.0 * std::max(0.0, q.fit.r2); }
 
-/// A residual's autocorrelation, and the share of the output's power that is neither modelled nor noise.
+/// A residual against what sensors and noisy steering leave, and the share of the output's power that is neither
+/// modelled nor noise.
 struct ResidualFinding {
   Evidence row;
   double unmodelled = 0.0;
 };
 
-/// Normalised chi-square of a residual: what it is over what sensors and noisy steering leave. Noise is known to a
-/// factor of two; what exceeds it and is autocorrelated is motion that the bicycle does not have.
-ResidualFinding check_residual(const estimation::PredictedQuantity& q, double sensor_sigma,
-                               const estimation::PredictedQuantity* by_noise) {
-  const double sigma = std::hypot(sensor_sigma, by_noise != nullptr ? by_noise->fit.rmse : 0.0);
-  const double times = q.fit.rmse / sigma;
-  const double beyond = std::max(0.0, 1.0 - kNoiseDoubt * kNoiseDoubt / (times * times));
-  const bool autocorrelated = q.lag1 > kAutocorrelated;
-  Evidence row{.name = "residual beyond the sensors",
-               .about = q.name,
-               .value = times * times,
-               .limit = kBeyondNoise * kBeyondNoise,
-               .scale = "normalised chi-square",
-               .bears_on = Purpose::kParameters};
-  if (autocorrelated && times > kBeyondNoise) row.outcome = times > kNoiseDoubt ? Outcome::kFailed : Outcome::kCare;
-  if (row.passed()) {
-    row.text = fmt::format(
-        "the residual of {} is {:.2g} times what sensors and noisy steering leave "
-        "(autocorrelation at one sample {:.2f})",
-        q.name, times, q.lag1);
-  } else {
-    row.text = fmt::format(
-        "the residual of {} is {:.2g} times what sensors and noisy steering leave (rms {:.3g} {} against {:.3g}, "
-        "autocorrelation at one sample {:.2f}): something that moves this vehicle is not in the model",
-        q.name, times, q.fit.rmse, q.unit, sigma, q.lag1);
-    row.advice =
-        "where identify.structure fixes the model, leave it to the data; if the body rolls, record roll or give "
-        "signals.roll_gradient; the values still predict what the hold-out says";
+/// What exceeds the noise by more than that is known to, and is autocorrelated, is motion that the model does not have.
+/// Where there is no noise to compare with, the share tells.
+ResidualFinding check_residual(const estimation::PredictedQuantity& q, double sigma, bool noise_free) {
+  const double ratio = std::pow(q.fit.rmse / sigma, 2), unexplained = std::max(0.0, 1.0 - q.fit.r2);
+  if (noise_free) {
+    Evidence row = row_of(Check::kResidualBeyondSensors, q.name, Outcome::kNotVerified);
+    row.cause = Cause::kNoise;
+    return {std::move(row), unexplained};
   }
-  return {std::move(row), std::max(0.0, 1.0 - q.fit.r2) * beyond};
+  const estimation::Tolerance& limits = estimation::info_of(Check::kResidualBeyondSensors).tolerance;
+  Evidence row = row_of(Check::kResidualBeyondSensors, q.name,
+                        q.lag1 > kAutocorrelated ? estimation::outcome_of(ratio, 0.0, limits) : Outcome::kPassed);
+  if (!row.passed()) row.cause = Cause::kMissingTerm;
+  row.value = ratio;
+  row.limit = row.outcome == Outcome::kFailed ? limits.highest : limits.high;
+  return {std::move(row), unexplained * std::max(0.0, 1.0 - limits.highest / ratio)};
 }
 
-/// All residuals, and the share of the outputs' power that nothing explains.
+/// What the noise of its sensor and of the steering leaves of an output [its unit]; nothing where it is not judged.
+std::optional<double> noise_of(const estimation::PredictedQuantity& q, const DriveSignals& signals,
+                               const DriveValidation& by_noise) {
+  const auto signal = std::ranges::find(kDriveSignalNames, q.name);
+  // A heading is the integral of what is judged.
+  if (signal == kDriveSignalNames.end() || *signal == kDriveSignalNames[DriveSignal::kYaw]) return std::nullopt;
+  const estimation::PredictedQuantity* by_steering = by_noise.find(q.name);
+  return std::hypot(signals.signals[signal - kDriveSignalNames.begin()].sigma,
+                    by_steering != nullptr ? by_steering->fit.rmse : 0.0);
+}
+
+/// All residuals, and the largest share of an output's power that nothing explains.
 std::vector<Evidence> check_residuals(const VehicleProblem& problem, const VehicleFindings& findings) {
   std::vector<Evidence> rows;
+  const bool noise_free = is_noise_free(problem.signals, problem.segments.identification);
   double unmodelled = 0.0;
-  std::string worst;
+  std::string worst = "outputs";
   for (const estimation::PredictedQuantity& q : findings.fit.quantities) {
-    const auto signal = std::find(kDriveSignalNames.begin(), kDriveSignalNames.end(), q.name);
-    if (signal == kDriveSignalNames.end() || q.name == "yaw") continue;
-    const double sigma = problem.signals.signals[signal - kDriveSignalNames.begin()].sigma;
-    ResidualFinding found = check_residual(q, sigma, findings.by_noise.find(q.name));
+    const std::optional<double> sigma = noise_of(q, problem.signals, findings.by_noise);
+    if (!sigma) continue;
+    ResidualFinding found = check_residual(q, *sigma, noise_free);
     if (found.unmodelled > unmodelled) {
       unmodelled = found.unmodelled;
       worst = q.name;
@@ -87,133 +86,82 @@ std::vector<Evidence> check_residuals(const VehicleProblem& problem, const Vehic
     rows.push_back(std::move(found.row));
   }
   const double limit = problem.options.max_unmodelled;
-  const bool passed = unmodelled <= limit;
-  rows.push_back(
-      {.name = "unmodelled share",
-       .outcome = passed_or(passed, Outcome::kFailed),
-       .value = unmodelled,
-       .limit = limit,
-       .scale = "share of the variance",
-       .text = passed
-                   ? fmt::format("{:.1f} % of the outputs' variance is neither modelled nor noise", 100.0 * unmodelled)
-                   : fmt::format("{:.0f} % of the variance of {} is neither modelled nor noise of the sensors",
-                                 100.0 * unmodelled, worst),
-       .bears_on = Purpose::kParameters});
+  Evidence share = row_of(Check::kUnmodelledShare, worst, passed_or(unmodelled <= limit, Outcome::kFailed));
+  if (!share.passed()) share.cause = Cause::kMissingTerm;
+  share.value = unmodelled;
+  share.limit = limit;
+  rows.push_back(std::move(share));
   return rows;
 }
 
-Evidence check_simulation(bool simulated) {
-  return {.name = "simulation",
-          .outcome = passed_or(simulated, Outcome::kFailed),
-          .value = simulated ? 1.0 : 0.0,
-          .limit = 1.0,
-          .text = simulated ? "the identified model was simulated over the drive"
-                            : "the identified model cannot be simulated over the drive",
-          .bears_on = Purpose::kParameters | Purpose::kPrediction};
+/// Where there is nothing to judge a prediction by.
+Evidence no_prediction(Cause cause) {
+  Evidence row = row_of(Check::kHoldOut, "yaw_rate", Outcome::kMissing);
+  row.cause = cause;
+  row.bears_on = Purpose::kPrediction;
+  return row;
 }
 
 /// `yaw_rate` is null where nothing was held out.
 Evidence check_prediction(const estimation::PredictedQuantity* yaw_rate, double least_r2) {
-  Evidence row{.name = "hold-out", .value = std::nan(""), .limit = least_r2, .scale = "R2"};
-  if (yaw_rate == nullptr) {
-    row.outcome = Outcome::kMissing;
-    row.text = "there was no hold-out to validate on, so prediction is not judged";
-    row.bears_on = Purpose::kPrediction;
-    row.advice = "drive the manoeuvres at least twice, so that some of them can be held out";
-    return row;
-  }
-  const bool passed = yaw_rate->fit.r2 >= least_r2;
+  if (yaw_rate == nullptr) return no_prediction(Cause::kMissing);
+  Evidence row = row_of(Check::kHoldOut, "yaw_rate", passed_or(yaw_rate->fit.r2 >= least_r2, Outcome::kFailed));
   row.value = yaw_rate->fit.r2;
-  row.outcome = passed_or(passed, Outcome::kFailed);
-  row.text = passed ? fmt::format("it explains {:.1f} % of the yaw rate's variance on the hold-out",
-                                  percent_explained(*yaw_rate))
-                    : fmt::format("it explains {:.0f} % of the yaw rate's variance on the hold-out, less than {:.0f} %",
-                                  percent_explained(*yaw_rate), 100.0 * least_r2);
-  row.bears_on = Purpose::kParameters | Purpose::kPrediction;
+  row.limit = least_r2;
   return row;
 }
 
 Evidence check_residual_on_holdout(const estimation::PredictedQuantity& there,
                                    const estimation::PredictedQuantity& here) {
-  const bool systematic = there.lag1 > kAutocorrelated && there.fit.rmse > kBeyondNoise * here.fit.rmse;
-  const bool autocorrelated_there = there.lag1 > kAutocorrelated && !(here.lag1 > kAutocorrelated);
-  const bool holds = !systematic && !autocorrelated_there;
-  return {.name = "residual on the hold-out",
-          .outcome = passed_or(holds, Outcome::kCare),
-          .value = there.fit.rmse,
-          .limit = kBeyondNoise * here.fit.rmse,
-          .scale = "rad/s",
-          .text = fmt::format("the yaw rate's residual on the hold-out is {:.3g} rad/s rms (identification {:.3g}), "
-                              "autocorrelation at one sample {:.2f} ({:.2f}){}",
-                              there.fit.rmse, here.fit.rmse, there.lag1, here.lag1,
-                              holds ? "" : ": the model is systematically off where it was not identified"),
-          .bears_on = Purpose::kPrediction};
+  const double ratio = there.fit.rmse / here.fit.rmse;
+  const double limit = estimation::info_of(Check::kHoldOutResidual).tolerance.high;
+  const bool systematic = there.lag1 > kAutocorrelated && (ratio > limit || !(here.lag1 > kAutocorrelated));
+  Evidence row = row_of(Check::kHoldOutResidual, "yaw_rate", passed_or(!systematic, Outcome::kCare));
+  if (systematic) row.cause = Cause::kMissingTerm;
+  row.value = ratio;
+  row.limit = limit;
+  return std::move(row).with("lag1", there.lag1).with("lag1_fit", here.lag1);
 }
 
 /// A check by the p value of "they agree". Equation error has linear tyres only: with the Magic Formula its
 /// contradictions say no more than that.
-Evidence by_p(const char* name, double p, const VehicleIdentifyOptions& options, std::string agree,
-              std::string contradict) {
-  const bool agrees = p >= options.contradiction_level;
+Evidence by_p(Check check, double p, const VehicleIdentifyOptions& options) {
   const Outcome otherwise = options.model.tyre == kDriveTyre<LinearTyre> ? Outcome::kFailed : Outcome::kCare;
-  return {.name = name,
-          .outcome = passed_or(agrees, otherwise),
-          .value = p,
-          .limit = options.contradiction_level,
-          .scale = "p",
-          .text = agrees ? std::move(agree) : std::move(contradict),
-          .bears_on = Purpose::kParameters};
+  Evidence row = row_of(check, "", passed_or(p >= options.contradiction_level, otherwise));
+  if (!row.passed()) row.cause = Cause::kMissingTerm;
+  row.value = p;
+  row.limit = options.contradiction_level;
+  return row;
 }
 
 /// Equation error against output error, where that has all three parameters.
 std::optional<Evidence> check_methods(const VehicleProblem& problem, const AxleEstimate& axle,
-                                      const OutputErrorResult* output_error) {
+                                      const OutputErrorResult* output_error, double model_error) {
   if (output_error == nullptr || !output_error->estimate.usable) return std::nullopt;
-  const std::array<const char*, 3> names{"C_f", "C_r", "I_z"};
   Eigen::Vector3d difference;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const Parameter* p = output_error->estimate.find(names[i]);
+  for (std::size_t i = 0; i < kBasicUnknowns.size(); ++i) {
+    const Parameter* p = output_error->estimate.find(kDriveUnknownNames[kBasicUnknowns[i]]);
     if (p == nullptr) return std::nullopt;
     difference(i) = p->value - axle.value(i);
   }
   // Both come from the same data, so the sum of covariances is more than their difference has: a weak test, but one
   // without false alarms.
   Eigen::Matrix3d covariance = axle.covariance;
-  covariance += output_error->raw.covariance.topLeftCorner(3, 3);
+  covariance += model_error * output_error->raw.covariance.topLeftCorner(3, 3);
   // Small angles, which only equation error takes.
   covariance.diagonal() += (kSmallAngleError * axle.value).cwiseAbs2();
-  const double p = estimation::agreement_p(difference, covariance);
-  return by_p("agreement of methods", p, problem.options,
-              fmt::format("equation error and output error agree (p = {:.2g})", p),
-              fmt::format("equation error and output error contradict each other beyond their error bars (p = "
-                          "{:.1e}): the model is incomplete for this drive",
-                          p));
-}
-
-bool of_the_vehicle(const Parameter& p) {
-  return p.name == "C_f" || p.name == "C_r" || p.name == "I_z" || p.name == "mu" || p.name == "a" ||
-         p.name == "understeer_gradient";
+  return by_p(Check::kMethodsAgree, estimation::agreement_p(difference, covariance), problem.options);
 }
 
 }  // namespace
 
 std::vector<Evidence> not_excited_rows(std::span<const std::string> unexcited) {
-  Evidence parameters{
-      .name = "excitation",
-      .about = "steer",
-      .outcome = Outcome::kFailed,
-      .value = 0.0,
-      .limit = 1.0,
-      .scale = "determined parameters",
-      .text = fmt::format("the drive does not determine {}", fmt::join(unexcited, ", ")),
-      .bears_on = Purpose::kParameters,
-      .advice = "drive with more steering: to and fro at 0.2 to 1 Hz, 1 to 3 m/s^2 of lateral acceleration"};
-  Evidence prediction = parameters;
-  prediction.outcome = Outcome::kMissing;
-  prediction.text = "nothing was identified that could predict";
-  prediction.bears_on = Purpose::kPrediction;
-  prediction.advice.clear();
-  return {std::move(parameters), std::move(prediction)};
+  Evidence row = row_of(Check::kExcitation, "steer", Outcome::kFailed);
+  row.cause = Cause::kExcitation;
+  row.value = 0.0;
+  row.limit = 1.0;
+  row.with("unexcited", fmt::format("{}", fmt::join(unexcited, ", ")));
+  return {std::move(row), no_prediction(Cause::kExcitation)};
 }
 
 AgreementChecks check_agreement(const VehicleProblem& problem, const VehicleFindings& findings) {
@@ -223,46 +171,58 @@ AgreementChecks check_agreement(const VehicleProblem& problem, const VehicleFind
   const DriveRegressionResult& regression = findings.equation_error->regression;
   const AxleEstimate* axle = regression.find(regression.recommends ? regression.recommended : Method::kGtls);
   if (axle == nullptr || !axle->usable) return checks;
-  const double p = axle->consistency_p;
-  checks.consistency =
-      by_p("consistency equation", p, problem.options,
-           fmt::format("the four coefficients of the regressions belong to one bicycle (p = {:.2g})", p),
-           fmt::format("the four coefficients of the regressions belong to no bicycle (p = {:.1e}): the model is "
-                       "incomplete for this vehicle, or a, b or a sensor's place is wrong",
-                       p));
-  checks.methods = check_methods(problem, *axle, findings.output_error);
+  checks.consistency = by_p(Check::kConsistencyEquation, axle->consistency_p, problem.options);
+  checks.methods = check_methods(problem, *axle, findings.output_error, findings.model_error);
   return checks;
 }
 
-VehicleJudgement judge_vehicle(const VehicleProblem& problem, const VehicleFindings& findings) {
+namespace {
+
+/// All rows of an estimate, in the order of the report.
+std::vector<Evidence> rows_of(const VehicleProblem& problem, const VehicleFindings& findings, bool excited,
+                              std::span<const std::string> unexcited) {
   const estimation::PredictedQuantity* there = findings.validation.find("yaw_rate");
   const estimation::PredictedQuantity* here = findings.fit.find("yaw_rate");
-  VehicleJudgement out;
-  out.checks = estimation::unfinished_rows(findings.unfinished);
+  std::vector<Evidence> rows;
+  const auto add = [&](std::vector<Evidence> more) { std::ranges::move(more, std::back_inserter(rows)); };
+  add(estimation::unfinished_rows(findings.unfinished));
   // A contradiction in the recording is the cause of others.
-  for (const Evidence& row : problem.recording)
-    out.checks.push_back(
-        in_time_of_model(explained_by_roll(row, findings.chosen.find("roll_gradient"), problem.signal_options.gravity),
-                         findings.steer_delay ? &*findings.steer_delay : nullptr));
-  for (Evidence& row : check_residuals(problem, findings)) out.checks.push_back(std::move(row));
-  out.checks.push_back(check_simulation(here != nullptr));
+  if (problem.recording != nullptr) {
+    KnownByModel known{.steer_delay = findings.steer_delay};
+    if (const Parameter* p = findings.chosen.find(kDriveUnknownNames[DriveUnknown::kRollGradient]))
+      known.roll_gradient = p->value;
+    add(recording_rows(*problem.recording, known));
+  }
+  add(check_residuals(problem, findings));
+  rows.push_back(row_of(Check::kSimulation, "", passed_or(here != nullptr, Outcome::kFailed)));
   const AgreementChecks agreement = check_agreement(problem, findings);
   for (const auto& check : {agreement.consistency, agreement.methods})
-    if (check) out.checks.push_back(*check);
-  if (findings.parts) out.checks.push_back(parts_row(*findings.parts, problem.options.contradiction_level));
+    if (check) rows.push_back(*check);
+  if (findings.parts) rows.push_back(parts_row(*findings.parts, problem.options.contradiction_level));
   if (std::optional<Evidence> row = doubt_row(findings.structure_doubts, findings.chosen))
-    out.checks.push_back(std::move(*row));
-  for (Evidence& row : plausibility(findings.chosen.parameters, problem.start)) out.checks.push_back(std::move(row));
-  for (Evidence& row : bound_rows(findings.chosen.parameters)) out.checks.push_back(std::move(row));
-  out.checks.push_back(check_prediction(there, problem.options.min_holdout_r2));
-  if (there != nullptr && here != nullptr) out.checks.push_back(check_residual_on_holdout(*there, *here));
+    rows.push_back(std::move(*row));
+  add(plausibility(findings.chosen.parameters, problem.start));
+  add(bound_rows(findings.chosen.parameters));
+  if (!excited) {
+    add(not_excited_rows(unexcited));
+    return rows;
+  }
+  rows.push_back(check_prediction(there, problem.options.min_holdout_r2));
+  if (there != nullptr && here != nullptr) rows.push_back(check_residual_on_holdout(*there, *here));
+  add({findings.further.begin(), findings.further.end()});
+  return rows;
+}
+
+}  // namespace
+
+VehicleJudgement judge_vehicle(const VehicleProblem& problem, const VehicleFindings& findings) {
   std::vector<std::string> identified, unexcited;
   for (const Parameter& p : findings.chosen.parameters) {
-    if (of_the_vehicle(p)) (p.status == ParameterStatus::kNotExcited ? unexcited : identified).push_back(p.name);
+    if (is_of_vehicle(p.name)) (p.status == ParameterStatus::kNotExcited ? unexcited : identified).push_back(p.name);
   }
   const bool excited = !identified.empty();
-  if (!excited)
-    for (Evidence& row : not_excited_rows(unexcited)) out.checks.push_back(std::move(row));
+  VehicleJudgement out;
+  out.checks = rows_of(problem, findings, excited, unexcited);
   out.judgement = estimation::judge(out.checks);
   out.verdict = excited ? estimation::verdict_of(out.judgement) : estimation::GroupVerdict::kNotExcited;
   if (!excited) {
@@ -270,6 +230,7 @@ VehicleJudgement judge_vehicle(const VehicleProblem& problem, const VehicleFindi
     return out;
   }
 
+  const estimation::PredictedQuantity* there = findings.validation.find("yaw_rate");
   const std::string holdout =
       there != nullptr ? fmt::format(": {:.1f} % of the yaw rate's variance on the hold-out", percent_explained(*there))
                        : ", without a hold-out to validate on";

@@ -26,7 +26,9 @@ struct VehicleFindings {
   std::optional<PartsAgreement> parts = {};
   std::optional<estimation::Parameter> steer_delay = {};  ///< see StructureLadder
   std::span<const StructureDoubt> structure_doubts = {};  ///< which the intervals of `chosen` have
-  estimation::UnfinishedSearch unfinished = {};           ///< by an interruption
+  double model_error = 1.0;                      ///< by which variances of output error grow (`model_error_factor`)
+  estimation::UnfinishedSearch unfinished = {};  ///< by an interruption
+  std::span<const estimation::Evidence> further = {};  ///< rows of what else was done with the estimate
 };
 
 /// The verdict on an identified vehicle and what it rests on.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "veridyn/estimation/result/parameter.hpp"
+#include "veridyn/vehicle/identification/options/drive_model_options.hpp"
 #include "veridyn/vehicle/identification/options/vehicle_method.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
 
@@ -21,7 +22,8 @@ struct VehicleEstimate {
   /// equation error `steer_offset`, what the biases of steering, gyro and accelerometer add up to as a steer angle.
   std::vector<estimation::Parameter> parameters;
   Eigen::MatrixXd covariance;  ///< in their order
-  /// The part of it that comes from what is not known of mass, a and b; empty: none.
+  /// The part of it that more of the same drive would not make smaller, what is not known of mass, a and b, and the
+  /// model's error on a noise-free drive; empty: none.
   Eigen::MatrixXd given_covariance = {};
   double degrees_of_freedom = 1.0;
   /// Null where the method does not estimate it.
@@ -30,6 +32,13 @@ struct VehicleEstimate {
 
 /// The estimate by a method, or null.
 [[nodiscard]] const VehicleEstimate* find_estimate(std::span<const VehicleEstimate> estimates, VehicleMethod method);
+
+/// The parameter that is no unknown of a model, but follows from them.
+inline constexpr std::string_view kUndersteerGradient = "understeer_gradient";
+/// Whether a parameter is the vehicle's, not the day's.
+[[nodiscard]] constexpr bool is_of_vehicle(std::string_view parameter) {
+  return parameter == kUndersteerGradient || is_one_of(parameter, kVehicleUnknowns);
+}
 
 /// m/(2 L) (b/C_f - a/C_r) [rad/(m/s^2)]: extra steer angle per lateral acceleration of the linear bicycle. Positive:
 /// understeer.

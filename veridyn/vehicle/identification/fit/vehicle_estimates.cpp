@@ -48,10 +48,10 @@ Eigen::Vector3d understeer_slope(const VehicleParameters<double>& p) {
 /// Physical parameters that are hardly known are not excited, whatever their t-test says.
 std::vector<Parameter> with_unexcited(std::vector<Parameter> parameters, double max_relative_sigma) {
   for (Parameter& p : parameters) {
-    const bool physical = p.name == "C_f" || p.name == "C_r" || p.name == "I_z" || p.name == "mu";
     // At a bound that the data do not even hold it to, a search ends by chance.
     const double most = p.status == ParameterStatus::kAtBound ? 1.0 : max_relative_sigma;
-    if (physical && !(p.sigma <= most * std::abs(p.value))) p.status = ParameterStatus::kNotExcited;
+    if (is_one_of(p.name, kVehicleUnknowns) && !(p.sigma <= most * std::abs(p.value)))
+      p.status = ParameterStatus::kNotExcited;
   }
   return parameters;
 }

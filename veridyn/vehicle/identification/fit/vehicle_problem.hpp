@@ -1,14 +1,13 @@
 #pragma once
 
-#include <span>
-
-#include "veridyn/estimation/judgement/evidence.hpp"
 #include "veridyn/vehicle/identification/options/vehicle_identify_options.hpp"
 #include "veridyn/vehicle/identification/signals/drive_segments.hpp"
 #include "veridyn/vehicle/identification/signals/drive_signals.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
 
 namespace veridyn::vehicle {
+
+struct DriveFindings;  // drive_evidence.hpp
 
 /// View of what identification is given. Mass, a and b of `start` are known; C_f, C_r, I_z are where the search begins.
 struct VehicleProblem {
@@ -17,8 +16,7 @@ struct VehicleProblem {
   const VehicleParameters<double>& start;
   const DriveSignalOptions& signal_options;
   const VehicleIdentifyOptions& options;
-  /// What was found of the recording: rows that bear on the estimate too.
-  std::span<const estimation::Evidence> recording = {};
+  const DriveFindings* recording = nullptr;  ///< what the recording says of itself; null: it was not looked at
 };
 
 }  // namespace veridyn::vehicle

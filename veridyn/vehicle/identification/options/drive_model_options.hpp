@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
+#include <span>
 #include <string_view>
 
 #include "veridyn/core/constants.hpp"
@@ -54,6 +57,11 @@ enum class DriveUnknown : std::size_t {
 inline constexpr std::size_t kDriveUnknowns = 31;
 /// All of them, in order.
 inline constexpr auto kAllDriveUnknowns = enumerators<DriveUnknown, kDriveUnknowns>();
+/// What the model of every structure has of the vehicle.
+inline constexpr std::array kBasicUnknowns{DriveUnknown::kCf, DriveUnknown::kCr, DriveUnknown::kIz};
+/// Those that are the vehicle's, not the day's, beside what a structure adds.
+inline constexpr std::array kVehicleUnknowns{DriveUnknown::kCf, DriveUnknown::kCr, DriveUnknown::kIz, DriveUnknown::kA,
+                                             DriveUnknown::kMu};
 /// A value for each of them.
 template <class T>
 using PerDriveUnknown = EnumArray<DriveUnknown, T, kDriveUnknowns>;
@@ -95,6 +103,10 @@ inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownUnits{
     "1",     "1",     "s^2/m^2", "s^2/m^2", "1",   "1", "rad/s", "1",         "rad", "1", "rad/s",
     "m/s^2", "1",     "rad",     "rad/s",   "rad", "s", "s",     "s",         "s"};
 static_assert(!kDriveUnknownNames.back().empty() && !kDriveUnknownUnits.back().empty(), "one is missing");
+/// Whether a parameter is one of these unknowns.
+[[nodiscard]] constexpr bool is_one_of(std::string_view parameter, std::span<const DriveUnknown> unknowns) {
+  return std::ranges::any_of(unknowns, [&](DriveUnknown u) { return kDriveUnknownNames[u] == parameter; });
+}
 /// Whether it is an offset of a sensor, which each drive has its own of.
 [[nodiscard]] constexpr bool is_bias(DriveUnknown u) {
   return u == DriveUnknown::kSteerBias || u == DriveUnknown::kYawRateBias || u == DriveUnknown::kAccelYBias ||

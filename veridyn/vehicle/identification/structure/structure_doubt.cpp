@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "veridyn/core/index.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
+#include "veridyn/vehicle/identification/options/drive_model_options.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -19,8 +21,6 @@ double difference_of(const StructureDoubt& doubt, std::string_view parameter) {
     if (name == parameter) return difference;
   return 0.0;
 }
-
-bool is_shown(const estimation::Parameter& p) { return p.name == "C_f" || p.name == "C_r" || p.name == "I_z"; }
 
 }  // namespace
 
@@ -68,28 +68,21 @@ std::optional<estimation::Evidence> doubt_row(std::span<const StructureDoubt> do
         fmt::format("{} (probability {:.2g})", name_of(doubt.structure, doubt.effects), doubt.probability));
   double largest = 0.0;
   for (const estimation::Parameter& p : estimate.parameters) {
-    if (!is_shown(p) || !(p.sigma > 0.0)) continue;
+    if (!is_one_of(p.name, kBasicUnknowns) || !(p.sigma > 0.0)) continue;
     const double doubt = doubt_of(doubts, p.name);
     largest = std::max(largest, doubt / p.sigma);
     if (doubt > kLimit * p.sigma)
       named.push_back(fmt::format("{} by {:.1f} %", p.name, 100.0 * doubt / std::abs(p.value)));
   }
-  const bool passed = named.empty();
-  estimation::Evidence row{.name = "doubt of the structure",
-                           .outcome = estimation::passed_or(passed, estimation::Outcome::kNotVerified),
-                           .value = largest,
-                           .limit = kLimit,
-                           .scale = "doubt over standard error",
-                           .bears_on = estimation::Purpose::kParameters};
-  row.text = fmt::format("the drive neither asks for nor excludes {}: ", fmt::join(structures, " and "));
-  row.text += passed ? "what that would change is within the standard errors, which have it"
-                     : fmt::format("most of the intervals is what that would change (one standard deviation): {}",
-                                   fmt::join(named, ", "));
-  if (!passed)
-    row.advice =
-        "drive livelier: faster steering (above 1 Hz) shows how tyres lag, harder cornering (above 3 m/s^2) how they "
-        "saturate";
-  return row;
+  using estimation::Outcome;
+  estimation::Evidence row = estimation::row_of(estimation::Check::kStructureDoubt, "",
+                                                estimation::passed_or(named.empty(), Outcome::kNotVerified));
+  if (!named.empty()) row.cause = estimation::Cause::kMissingTerm;
+  row.value = largest;
+  row.limit = kLimit;
+  return std::move(row)
+      .with("structures", fmt::format("{}", fmt::join(structures, " and ")))
+      .with("parameters", fmt::format("{}", fmt::join(named, ", ")));
 }
 
 }  // namespace veridyn::vehicle

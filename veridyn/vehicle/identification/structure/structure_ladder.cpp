@@ -9,7 +9,8 @@
 
 #include "veridyn/core/index.hpp"
 #include "veridyn/numerics/linear_algebra/cholesky.hpp"
-#include "veridyn/numerics/statistics.hpp"
+#include "veridyn/vehicle/identification/evidence/drive_evidence.hpp"
+#include "veridyn/vehicle/identification/evidence/model_error.hpp"
 #include "veridyn/vehicle/identification/structure/drive_effects.hpp"
 #include "veridyn/vehicle/identification/structure/structure_doubt.hpp"
 #include "veridyn/vehicle/identification/validation/vehicle_prediction.hpp"
@@ -19,16 +20,6 @@ namespace {
 
 /// Probability below which a structure leaves no doubt.
 constexpr double kExcluded = 1e-3;
-
-/// Median over the parameters of the corrected variance over the white one.
-double inflation_of(const estimation::OutputErrorEstimate& fit) {
-  std::vector<double> ratios;
-  for (const estimation::Parameter& p : fit.parameters) {
-    const double ratio = std::pow(p.sigma / p.sigma_white, 2);
-    if (p.sigma > 0.0 && std::isfinite(ratio)) ratios.push_back(ratio);
-  }
-  return ratios.empty() ? 1.0 : std::max(1.0, numerics::median(ratios));
-}
 
 /// What priors and the posterior's width say of a fit: minus half of the priors' chi-square, and the logarithm of the
 /// ratio of the volumes that the unknowns have after and before the data.
@@ -68,11 +59,10 @@ TriedStructure tried(const VehicleProblem& problem, const OutputErrorResult& fit
   if (!out.usable) return out;
   out.negative_log_likelihood = fit.raw.negative_log_likelihood;
   out.log_prior_volume = log_prior_volume(problem, fit);
-  out.inflation = inflation_of(fit.raw);
+  out.inflation = variance_inflation(fit.raw);
   out.at_bound = ends_at_simpler(out.structure, fit);
-  constexpr std::array kShown{DriveUnknown::kCf, DriveUnknown::kCr, DriveUnknown::kIz};
-  for (std::size_t i = 0; i < kShown.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(kShown[i]);
+  for (std::size_t i = 0; i < kBasicUnknowns.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(kBasicUnknowns[i]);
     out.value[i] = fit.raw.theta(row);
     out.sigma[i] = std::sqrt(fit.raw.covariance(row, row));
   }
@@ -128,7 +118,10 @@ VehicleIdentifyOptions with_structure(VehicleIdentifyOptions options, DriveStruc
 class Climb {
  public:
   Climb(const VehicleProblem& problem, const EquationErrorEstimates* equation_error, Progress& progress)
-      : problem_(problem), equation_error_(equation_error), progress_(progress) {}
+      : problem_(problem),
+        equation_error_(equation_error),
+        progress_(progress),
+        contradicts_(problem.recording != nullptr && contradicts_itself(*problem.recording)) {}
 
   StructureLadder run() {
     if (problem_.options.structure) {
@@ -146,11 +139,7 @@ class Climb {
   }
 
   /// A recording that contradicts itself says nothing of the structure.
-  [[nodiscard]] bool contradicts() const {
-    return std::ranges::any_of(problem_.recording, [](const estimation::Evidence& row) {
-      return row.outcome == estimation::Outcome::kFailed;
-    });
-  }
+  [[nodiscard]] bool contradicts() const { return contradicts_; }
 
  private:
   [[nodiscard]] VehicleProblem given(std::size_t rung) const { return with_options(problem_, options_[rung]); }
@@ -318,6 +307,7 @@ class Climb {
   const VehicleProblem& problem_;
   const EquationErrorEstimates* equation_error_;
   Progress& progress_;
+  bool contradicts_;
   StructureLadder ladder_;
   std::vector<OutputErrorResult> fits_;
   std::vector<VehicleIdentifyOptions> options_;
