@@ -90,12 +90,13 @@ std::string axis_section(const recording::MappedRecording& mapped, Summary& summ
   for (std::size_t i = 0; i < found.explanations.size(); ++i) {
     const char* begin = found.is_sure() ? "wrong:" : i == 0 ? "either:" : "or:";
     for (const recording::ChannelFault& f : found.explanations[i]) {
-      const std::vector<std::string> lines = correction_of(f, motion, mapped.origins);
+      const std::vector<std::string> lines = correction_of(f, motion.names, mapped.origins);
       // What may be motion is no fault for sure.
-      text += fmt::format("  {} {}\n", f.cause == estimation::Cause::kMissingTerm ? "note:" : begin, f.says(motion));
+      text +=
+          fmt::format("  {} {}\n", f.cause == estimation::Cause::kMissingTerm ? "note:" : begin, f.says(motion.names));
       const char* table = f.cause == estimation::Cause::kFrame ? "data" : "data.map";
       for (const std::string& line : lines) text += fmt::format("      correct it in [{}]: {}\n", table, line);
-      Summary one = Summary::object({{"fault", f.says(motion)},
+      Summary one = Summary::object({{"fault", f.says(motion.names)},
                                      {"cause", estimation::to_string(f.cause)},
                                      {"factor", f.factor},
                                      {"sure", found.is_sure()}});

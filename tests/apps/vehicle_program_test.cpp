@@ -291,12 +291,6 @@ TEST_F(VehicleProgram, RefusesLogsThatHoldNoDrive) {
         return Row{2.0 * std::sin(t), 20.0, 0.1 * std::sin(t), 2.0 * std::sin(t)};
       },
       "is it the hand wheel's angle, or in degrees?");
-  refused(
-      "mirrored",
-      [](double t) {
-        return Row{0.02 * std::sin(t), 20.0, -0.1 * std::sin(t), 2.0 * std::sin(t)};
-      },
-      "accel_y goes against yaw_rate x speed");
   expect_refusal("identify " + file("bare.toml", "[subject]\nkind = \"vehicle\"\n") + out(), "data: is missing");
   file("empty.csv", "time[s],steer[rad],speed[m/s],yaw_rate[rad/s],accel_y[m/s^2]\n");
   expect_refusal(
@@ -304,6 +298,16 @@ TEST_F(VehicleProgram, RefusesLogsThatHoldNoDrive) {
           file("empty.toml", "[subject]\nkind = \"vehicle\"\nmass = 1\na = 1\nb = 1\n[data]\nfile = \"empty.csv\"\n") +
           out(),
       "not one row of data");
+}
+
+TEST_F(VehicleProgram, NamesAYawRateOfTheWrongSign) {
+  const std::string mirrored = logged("mirrored", [](double t) {
+    return std::array<double, 4>{0.02 * std::sin(t), 20.0, -0.1 * std::sin(t), 2.0 * std::sin(t)};
+  });
+  const Outcome identified = run("identify " + mirrored + out());
+  EXPECT_THAT(identified.text, HasSubstr("The recording contradicts itself"));
+  EXPECT_THAT(identified.text, HasSubstr("the sign of yaw_rate is reversed"));
+  EXPECT_THAT(run("inspect " + mirrored).text, HasSubstr("yaw_rate has the wrong sign"));
 }
 
 TEST_F(VehicleProgram, StraightDrivingIsNoErrorAndIdentifiesNothing) {

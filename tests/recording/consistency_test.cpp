@@ -68,7 +68,7 @@ void scale(DriveMotion& m, const std::vector<InertialChannel>& signals, double f
 std::vector<std::string> said(const Consistency& c, const DriveMotion& m) {
   std::vector<std::string> all;
   for (const auto& faults : c.explanations)
-    for (const ChannelFault& f : faults) all.push_back(f.says(m));
+    for (const ChannelFault& f : faults) all.push_back(f.says(m.names));
   return all;
 }
 
@@ -76,7 +76,7 @@ std::vector<std::string> lines_of(const Consistency& c, const DriveMotion& m) {
   std::vector<std::string> lines;
   for (const auto& faults : c.explanations)
     for (const ChannelFault& f : faults)
-      for (std::string& line : correction_of(f, m)) lines.push_back(std::move(line));
+      for (std::string& line : correction_of(f, m.names)) lines.push_back(std::move(line));
   return lines;
 }
 
@@ -94,7 +94,7 @@ TEST(Consistency, FindsNoFaultInTwoHundredCleanDrives) {
       // The body leans and so does the road: that is in the accelerometer, and no fault.
       const bool leans = faults.size() == 1 && faults.front().cause == Cause::kMissingTerm;
       alarms += leans ? 0 : 1;
-      if (!leans) ADD_FAILURE() << seed << ": " << faults.front().says(m);
+      if (!leans) ADD_FAILURE() << seed << ": " << faults.front().says(m.names);
     }
     if (c.is_off() && c.explanations.empty()) {
       ++alarms;

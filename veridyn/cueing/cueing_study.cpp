@@ -72,13 +72,13 @@ DrivenMotion recorded(const StudyTable& data, const recording::MotionOptions& op
     for (const recording::ChannelFault& f : found.explanations[i]) {
       // A leaning body and a road across are felt as they are.
       if (f.cause == estimation::Cause::kMissingTerm) continue;
-      const std::vector<std::string> lines = correction_of(f, channels, log.mapped.origins);
+      const std::vector<std::string> lines = correction_of(f, channels.names, log.mapped.origins);
       drive.notes.push_back(fmt::format(
           "{}: {}{}",
           found.is_sure() ? "wrong"
           : i == 0        ? "either"
                           : "or",
-          f.says(channels), lines.empty() ? "" : fmt::format("; correct it by {}", fmt::join(lines, "; "))));
+          f.says(channels.names), lines.empty() ? "" : fmt::format("; correct it by {}", fmt::join(lines, "; "))));
     }
   }
   for (const auto* notes : {&log.mapped.notes, &motion.notes})

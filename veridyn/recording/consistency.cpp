@@ -290,9 +290,9 @@ void explain_by_exchange(const DriveMotion& m, const ConsistencyOptions& options
   }
 }
 
-std::string source_of(InertialChannel c, const DriveMotion& motion, std::span<const ChannelOrigin> origins) {
-  const auto found = std::ranges::find(origins, motion.names[c], &ChannelOrigin::channel);
-  return found == origins.end() ? motion.names[c] : found->source;
+std::string source_of(InertialChannel c, const ChannelNames& names, std::span<const ChannelOrigin> origins) {
+  const auto found = std::ranges::find(origins, names[c], &ChannelOrigin::channel);
+  return found == origins.end() ? names[c] : found->source;
 }
 
 }  // namespace
@@ -330,9 +330,9 @@ Consistency check_consistency(const DriveMotion& motion, const ConsistencyOption
   return result;
 }
 
-std::string ChannelFault::says(const DriveMotion& motion) const {
+std::string ChannelFault::says(const ChannelNames& called) const {
   std::vector<std::string> names;
-  for (const InertialChannel c : channels) names.push_back(motion.names[c]);
+  for (const InertialChannel c : channels) names.push_back(called[c]);
   const std::string all = fmt::format("{}", fmt::join(names, ", "));
   const bool one = names.size() == 1;
   switch (cause) {
@@ -350,13 +350,13 @@ std::string ChannelFault::says(const DriveMotion& motion) const {
       return fmt::format("{} has gravity in it twice", all);
     case Cause::kAxis: {
       std::vector<std::string> truth;
-      for (const InertialChannel c : from) truth.push_back(motion.names[c]);
+      for (const InertialChannel c : from) truth.push_back(called[c]);
       return fmt::format("{} are exchanged: they are recorded as {}", all, fmt::join(truth, ", "));
     }
     case Cause::kMissingTerm:
-      return fmt::format("{} reads {:.3g} times what yaw rate and speed imply: {}, or its scale is wrong", all, factor,
-                         factor > 1.0 && !motion.gravity_removed ? "the body or the road leans, the vehicle slides"
-                                                                 : "the vehicle slides");
+      return fmt::format(
+          "{} reads {:.3g} times what yaw rate and speed imply: {}the vehicle slides, or its scale is wrong", all,
+          factor, factor > 1.0 ? "the body or the road leans, " : "");
     case Cause::kSwap:
       return fmt::format("{} shows another motion", all);
     default:
@@ -364,13 +364,13 @@ std::string ChannelFault::says(const DriveMotion& motion) const {
   }
 }
 
-std::vector<std::string> correction_of(const ChannelFault& fault, const DriveMotion& motion,
+std::vector<std::string> correction_of(const ChannelFault& fault, const ChannelNames& names,
                                        std::span<const ChannelOrigin> origins) {
   if (fault.cause == Cause::kFrame) return {"frame = \"frd\""};
   if (fault.cause == Cause::kSwap || fault.cause == Cause::kMissingTerm || fault.cause == Cause::kGravity) return {};
   std::vector<std::string> lines;
   if (fault.hand_wheel) {
-    const std::string source = toml_text(source_of(kSteer, motion, origins));
+    const std::string source = toml_text(source_of(kSteer, names, origins));
     return {"steer = \"none\"", fault.truly == "deg"
                                     ? fmt::format("steering_wheel = {{ channel = {}, unit = \"deg\" }}", source)
                                     : fmt::format("steering_wheel = {}", source)};
@@ -378,8 +378,8 @@ std::vector<std::string> correction_of(const ChannelFault& fault, const DriveMot
   for (std::size_t i = 0; i < fault.channels.size(); ++i) {
     const InertialChannel c = fault.channels[i];
     const InertialChannel recorded = fault.from.empty() ? c : fault.from[i];
-    lines.push_back(fmt::format("{} = {{ channel = {}, scale = {:.6g} }}", motion.names[c],
-                                toml_text(source_of(recorded, motion, origins)), 1.0 / fault.factor));
+    lines.push_back(fmt::format("{} = {{ channel = {}, scale = {:.6g} }}", names[c],
+                                toml_text(source_of(recorded, names, origins)), 1.0 / fault.factor));
   }
   return lines;
 }

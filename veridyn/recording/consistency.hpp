@@ -56,7 +56,7 @@ struct ChannelFault {
   std::vector<InertialChannel> from = {};  ///< of exchanged axes: where each of `channels` is recorded
 
   /// "speed is in km/h, not m/s".
-  [[nodiscard]] std::string says(const DriveMotion& motion) const;
+  [[nodiscard]] std::string says(const ChannelNames& names) const;
 };
 
 /// What relations say together.
@@ -98,7 +98,7 @@ struct ConsistencyOptions {
 
 /// The lines of `[data.map]`, or of `[data]` for a frame, that correct a fault.
 /// @param origins of the channels, where the recording's own names are others
-[[nodiscard]] std::vector<std::string> correction_of(const ChannelFault& fault, const DriveMotion& motion,
+[[nodiscard]] std::vector<std::string> correction_of(const ChannelFault& fault, const ChannelNames& names,
                                                      std::span<const ChannelOrigin> origins = {});
 
 /// The unit in which a channel is recorded if it reads `factor` times the truth in the belief that it is recorded in

@@ -18,8 +18,8 @@ PerInertialChannel<Unit> DriveMotion::si_units() {
   return units;
 }
 
-PerInertialChannel<std::string> DriveMotion::standard_names() {
-  PerInertialChannel<std::string> names;
+ChannelNames DriveMotion::standard_names() {
+  ChannelNames names;
   for (const InertialChannel channel : enumerators<InertialChannel, kInertialChannels>())
     names[channel] = kInertialChannelNames[channel];
   return names;

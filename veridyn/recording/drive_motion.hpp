@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -36,21 +37,22 @@ inline constexpr PerInertialChannel<std::string_view> kInertialChannelNames{
     "accel_x", "accel_y", "accel_z", "gyro_x", "gyro_y", "gyro_z", "roll",
     "pitch",   "yaw",     "speed",   "steer",  "pos_x",  "pos_y"};
 
+/// What a drive calls them: kGyroZ may be "yaw_rate", kSteer "steering_wheel".
+using ChannelNames = PerInertialChannel<std::string>;
+
 /// A drive on an even grid; a signal that is missing is empty, a value that is missing NaN. Angles are not wrapped.
 struct DriveMotion {
   numerics::UniformGrid grid{.step = 0.02};
   PerInertialChannel<std::vector<double>> signals;
   /// In which the numbers were taken to be recorded; of a signal that is not named, SI.
   PerInertialChannel<Unit> recorded_in = si_units();
-  /// What the drive calls them: kGyroZ may be "yaw_rate", kSteer "steering_wheel".
-  PerInertialChannel<std::string> names = standard_names();
-  bool hand_wheel = false;       ///< kSteer is the hand wheel's angle
-  bool course_for_yaw = false;   ///< kYaw is the direction of motion, which has the sideslip
-  bool gravity_removed = false;  ///< the part of a leaning body is taken off kAccelY
+  ChannelNames names = standard_names();
+  bool hand_wheel = false;      ///< kSteer is the hand wheel's angle
+  bool course_for_yaw = false;  ///< kYaw is the direction of motion, which has the sideslip
 
   [[nodiscard]] bool has(InertialChannel channel) const { return !signals[channel].empty(); }
   [[nodiscard]] static PerInertialChannel<Unit> si_units();
-  [[nodiscard]] static PerInertialChannel<std::string> standard_names();
+  [[nodiscard]] static ChannelNames standard_names();
 };
 
 /// Channels of a drive (frame flu) on an even grid of 50 Hz.

@@ -52,7 +52,7 @@ SignVerdict SignChecker::check() const {
     std::vector<std::string> faults;
     for (const std::vector<recording::ChannelFault>& together : found.explanations) {
       for (const recording::ChannelFault& f : together)
-        if (f.cause != estimation::Cause::kMissingTerm) faults.push_back(f.says(motion));
+        if (f.cause != estimation::Cause::kMissingTerm) faults.push_back(f.says(motion.names));
     }
     if (!faults.empty())
       return {SignVerdict::Kind::kWrong, fmt::format("{}", fmt::join(faults, found.is_sure() ? "; " : ", or "))};

@@ -15,16 +15,6 @@ using testing::prepared;
 using testing::recorded;
 using testing::without;
 
-TEST(DriveSignals, NoticesSignsThatContradictEachOther) {
-  const Recording r = recorded();
-  const auto negative = [](double, double v) { return -v; };
-  EXPECT_NE(why([&] { prepared(changed(r, "accel_y", negative)); }).find("accel_y goes against"), std::string::npos);
-  EXPECT_NE(why([&] { prepared(changed(r, "steer", negative)); }).find("steer goes against"), std::string::npos);
-  const DriveSignals in_g = prepared(changed(r, "accel_y", [](double, double v) { return v / 9.80665; }));
-  ASSERT_FALSE(in_g.notes.empty());
-  EXPECT_NE(in_g.notes.back().find("a unit, a scale"), std::string::npos);
-}
-
 TEST(DriveSignals, NamesWhatIsMissing) {
   const Recording r = recorded();
   EXPECT_NE(why([&] { prepared(without(r, "steer")); }).find("has no steer"), std::string::npos);

@@ -1,17 +1,12 @@
 #include "veridyn/vehicle/identification/evidence/drive_evidence.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <optional>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/numerics/statistics.hpp"
 #include "veridyn/recording/sample_evidence.hpp"
-#include "veridyn/recording/sensor_matrix.hpp"
 #include "veridyn/recording/signal_gain.hpp"
 #include "veridyn/recording/stamp_evidence.hpp"
 
@@ -24,75 +19,6 @@ using estimation::Evidence;
 using estimation::Outcome;
 using estimation::Purpose;
 using estimation::row_of;
-
-std::string_view name_of(DriveSuspect sensor) { return kDriveSuspectNames[sensor]; }
-
-std::string names_of(const std::vector<DriveCulprit>& suspects, std::string_view separator) {
-  std::vector<std::string_view> names;
-  for (const DriveCulprit& culprit : suspects) names.push_back(name_of(culprit.sensor));
-  return fmt::format("{}", fmt::join(names, separator));
-}
-
-/// The unit that explains a sensor's factor; empty: none does.
-std::string unit_of(const DriveCulprit& culprit) {
-  const double size = std::abs(culprit.factor);
-  // What the sideslip's approximation leaves of a gain.
-  constexpr double kModelError = 0.03;
-  // Ratios of steering gears from rack to hand wheel.
-  const bool hand_wheel = culprit.sensor == DriveSuspect::kSteer && size > 8.0 && size < 30.0;
-  return hand_wheel ? "the hand wheel's angle taken for the road wheels'"
-                    : recording::mistaken_unit(size, culprit.doubt + kModelError);
-}
-
-/// A body that leans outward shows part of gravity as lateral acceleration.
-bool may_lean(const DriveRelation& r, bool gravity_removed) {
-  constexpr double kMostByLean = 1.25;
-  return r.sensor == DriveSuspect::kAccelY && !gravity_removed && r.low > 1.0 && r.middle() < kMostByLean;
-}
-
-/// Whether the lean that the model knows is what accel_y reads too much.
-bool is_explained(const DriveRelation& r, std::optional<double> roll_gradient, double gravity) {
-  // What the sideslip's approximation leaves of the ratio.
-  constexpr double kModelError = 0.05;
-  return r.sensor == DriveSuspect::kAccelY && roll_gradient && r.outcome() == Outcome::kCare &&
-         std::abs(r.middle() - 1.0 - gravity * *roll_gradient) < kModelError;
-}
-
-Cause cause_of(const DriveRelation& r, const std::vector<DriveCulprit>& suspects, bool gravity_removed) {
-  if (may_lean(r, gravity_removed)) return Cause::kGravity;
-  if (r.unrelated()) return Cause::kAxis;
-  if (suspects.size() != 1) return Cause::kNone;
-  const DriveCulprit& culprit = suspects.front();
-  if (!std::isfinite(culprit.factor)) return Cause::kAxis;
-  if (!unit_of(culprit).empty()) return Cause::kUnit;
-  return culprit.factor < 0.0 ? Cause::kSign : Cause::kScale;
-}
-
-Evidence relation_row(const DriveRelation& r, const std::vector<DriveCulprit>& suspects, bool gravity_removed,
-                      double gravity, std::optional<double> roll_gradient) {
-  const bool leans = is_explained(r, roll_gradient, gravity);
-  Outcome outcome = leans ? Outcome::kPassed : r.outcome();
-  if (!leans && outcome == Outcome::kPassed && !r.verified) outcome = Outcome::kNotVerified;
-  Evidence row = row_of(r.check, std::string(name_of(r.sensor)), outcome);
-  row.value = r.middle();
-  row.sigma = (r.high - r.low) / (2.0 * estimation::kBeyondChance);
-  const bool failed = outcome == Outcome::kFailed, high = r.middle() > 1.0;
-  row.limit = failed ? (high ? r.tolerance.highest : r.tolerance.lowest) : (high ? r.tolerance.high : r.tolerance.low);
-  if (leans) {
-    row.cause = Cause::kGravity;
-  } else if (!row.passed()) {
-    row.cause = cause_of(r, suspects, gravity_removed);
-  } else if (!r.strong) {
-    row.cause = Cause::kExcitation;
-  }
-  const double gradient = leans ? *roll_gradient : (r.middle() - 1.0) / gravity;
-  row.with("sensor", std::string(name_of(r.sensor))).with("against", r.against).with("low", r.low).with("high", r.high);
-  row.with("correlation", r.correlation).with("gradient", gradient).with("lean", gradient * gravity);
-  row.with("suspects", suspects.empty() ? std::string("one of the sensors") : names_of(suspects, " or "));
-  if (!row.passed() && !suspects.empty()) row.about = names_of(suspects, ", ");
-  if (suspects.size() == 1) row.with("factor", suspects.front().factor).with("units", unit_of(suspects.front()));
-  return row;
-}
 
 std::vector<Evidence> drive_sample_rows(const Recording& recording, const DriveSegments& segments) {
   static const std::vector<recording::SampledChannel> kChannels{{"yaw_rate", "yaw_rate"},
@@ -112,21 +38,6 @@ std::vector<Evidence> drive_sample_rows(const Recording& recording, const DriveS
   std::vector<Evidence> rows = recording::sample_evidence(recording, kChannels, segments.usable);
   std::ranges::move(recording::stamp_evidence(recording, kChannels, segments.usable), std::back_inserter(rows));
   return rows;
-}
-
-/// Mean of the vertical specific force over g: unit, sign and frame of the accelerometer.
-std::optional<Evidence> gravity_row(const Recording& recording, double gravity) {
-  const Channel* accel = recording.find("accel_z");
-  if (accel == nullptr || accel->size() < 2) return std::nullopt;
-  std::vector<double> values;
-  std::ranges::copy_if(accel->value, std::back_inserter(values), [](double v) { return std::isfinite(v); });
-  if (values.empty()) return std::nullopt;
-  const double ratio = numerics::median(values) / gravity;
-  Evidence row = row_of(Check::kGravity, "accel_z", ratio);
-  if (row.passed()) return row;
-  const std::string unit = recording::mistaken_unit(std::abs(ratio));
-  row.cause = ratio < 0.0 ? Cause::kSign : unit.empty() ? Cause::kScale : Cause::kUnit;
-  return std::move(row).with("units", unit);
 }
 
 /// A vehicle whose wheels stand still comes to a steady turn; one that turns on does not stand still.
@@ -195,15 +106,6 @@ Evidence row_by_signals(const recording::DelayReport& report, bool misled) {
 
 }  // namespace
 
-std::vector<Evidence> relation_rows(std::span<const DriveRelation> relations, bool gravity_removed, double gravity,
-                                    std::optional<double> roll_gradient) {
-  const std::vector<DriveCulprit> suspects = culprits(relations);
-  std::vector<Evidence> rows;
-  for (const DriveRelation& relation : relations)
-    rows.push_back(relation_row(relation, suspects, gravity_removed, gravity, roll_gradient));
-  return rows;
-}
-
 Evidence steering_row(const recording::DelayReport& by_signals, const KnownByModel& known) {
   if (!known.steer_delay || !std::isfinite(known.steer_delay->sigma))
     return row_by_signals(by_signals, known.changed || known.roll_gradient.value_or(0.0) != 0.0);
@@ -218,8 +120,7 @@ bool contradicts_itself(const DriveFindings& findings) {
 
 std::vector<Evidence> recording_rows(const DriveFindings& findings, const KnownByModel& known) {
   std::vector<Evidence> rows = findings.rows;
-  for (Evidence& row :
-       relation_rows(findings.relations, findings.gravity_removed, findings.gravity, known.roll_gradient))
+  for (Evidence& row : consistency_rows(findings.consistency, known.roll_gradient, findings.gravity))
     rows.push_back(std::move(row));
   if (findings.steering_delay) rows.push_back(steering_row(*findings.steering_delay, known));
   const VehicleParameters<double>& p = findings.vehicle;
@@ -263,11 +164,9 @@ DriveFindings drive_findings(const recording::MappedRecording& mapped, const Dri
                              const DriveSegments& segments, const VehicleParameters<double>& vehicle,
                              const DriveSignalOptions& options, const Progress& progress) {
   DriveFindings out{.rows = drive_sample_rows(mapped.recording, segments),
-                    .relations = drive_relations(mapped, signals, segments.usable, vehicle.wheelbase()),
+                    .consistency = drive_consistency(mapped, signals, segments.usable, vehicle.wheelbase()),
                     .vehicle = vehicle,
-                    .gravity_removed = signals.gravity_removed,
                     .gravity = options.gravity};
-  if (auto row = gravity_row(mapped.recording, options.gravity)) out.rows.push_back(std::move(*row));
   if (auto row = frozen_steering(signals, segments.usable)) out.rows.push_back(std::move(*row));
   if (signals[DriveSignal::kSteer].available()) out.steering_delay = steering_delay(signals, segments.usable, progress);
   return out;

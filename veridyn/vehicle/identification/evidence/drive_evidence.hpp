@@ -12,21 +12,21 @@
 #include "veridyn/vehicle/identification/evidence/drive_consistency.hpp"
 #include "veridyn/vehicle/identification/signals/drive_segments.hpp"
 #include "veridyn/vehicle/identification/signals/drive_signals.hpp"
+#include "veridyn/vehicle/model/vehicle_parameters.hpp"
 
 namespace veridyn::vehicle {
 
 /// What the recording of a drive says of itself, before any model.
 struct DriveFindings {
   std::vector<estimation::Evidence> rows = {};  ///< which no model changes
-  std::vector<DriveRelation> relations = {};
+  DriveConsistency consistency = {};
   std::optional<recording::DelayReport> steering_delay = {};  ///< by signals; nothing without steering
   VehicleParameters<double> vehicle = {};                     ///< mass, a and b are taken as given
-  bool gravity_removed = false;                               ///< from accel_y
   double gravity = kGravity;
 };
 
-/// Does the recording of a drive agree with itself and with physics? The samples, the relations between the sensors
-/// (`drive_relations`), gravity, a steering that stands still in a turn, the order in time.
+/// Does the recording of a drive agree with itself and with physics? The samples, what the channels say of each
+/// other (`drive_consistency`), a steering that stands still in a turn, the order in time.
 [[nodiscard]] DriveFindings drive_findings(const recording::MappedRecording& mapped, const DriveSignals& signals,
                                            const DriveSegments& segments, const VehicleParameters<double>& vehicle,
                                            const DriveSignalOptions& options, const Progress& progress);
@@ -48,12 +48,6 @@ struct KnownByModel {
 /// The rows of a drive; and, "not verified", of what no drive shows: mass and the place of the centre of gravity.
 [[nodiscard]] std::vector<estimation::Evidence> recording_rows(const DriveFindings& findings,
                                                                const KnownByModel& known = {});
-
-/// The rows of the relations: which sensor is wrong and by how much, where one alone explains what is off. That of the
-/// lateral acceleration passes where the lean that the model knows explains it.
-[[nodiscard]] std::vector<estimation::Evidence> relation_rows(std::span<const DriveRelation> relations,
-                                                              bool gravity_removed, double gravity,
-                                                              std::optional<double> roll_gradient = std::nullopt);
 
 /// The row of the delay between steering and turning: by the model where that says it, else by signals, which never
 /// verify it.

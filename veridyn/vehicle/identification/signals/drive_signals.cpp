@@ -178,86 +178,6 @@ GridSignal heading(const Channel& yaw, const numerics::UniformGrid& grid, const 
   return signal_of(DriveSignal::kYaw, unwrapped, grid, options, "yaw");
 }
 
-/// Slope of y on x through the origin and their correlation, over samples where |x| is at least `least`.
-struct Relation {
-  double slope = 0.0;
-  double correlation = 0.0;
-  std::size_t count = 0;
-};
-Relation relate(const std::vector<double>& x, const std::vector<double>& y, double least) {
-  double xx = 0.0, xy = 0.0, yy = 0.0;
-  Relation relation;
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    if (!(std::abs(x[k]) >= least) || !std::isfinite(y[k])) continue;
-    xx += x[k] * x[k];
-    xy += x[k] * y[k];
-    yy += y[k] * y[k];
-    ++relation.count;
-  }
-  if (relation.count > 0 && xx > 0.0 && yy > 0.0) {
-    relation.slope = xy / xx;
-    relation.correlation = xy / std::sqrt(xx * yy);
-  }
-  return relation;
-}
-
-/// Means over two seconds about each sample; NaN where one is missing.
-std::vector<double> two_second_means(const std::vector<double>& values, double step) {
-  const auto half = static_cast<std::size_t>(1.0 / step);
-  std::vector<double> out(values.size(), kNaN);
-  double sum = 0.0;
-  std::size_t filled = 0;  // finite samples up to the window's end
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    if (!std::isfinite(values[k])) {
-      sum = 0.0;
-      filled = 0;
-      continue;
-    }
-    sum += values[k];
-    ++filled;
-    const std::size_t window = 2 * half + 1;
-    if (filled > window) sum -= values[k - window];
-    if (filled >= window) out[k - half] = sum / static_cast<double>(window);
-  }
-  return out;
-}
-
-/// Refuses signals of opposite signs; what is doubtful comes back as a note.
-std::optional<std::string> check_signs(const DriveSignals& signals) {
-  const std::vector<double>& u = signals[DriveSignal::kSpeed].value;
-  const std::vector<double>& r = signals[DriveSignal::kYawRate].value;
-  std::vector<double> centripetal(r.size());
-  for (std::size_t k = 0; k < r.size(); ++k) centripetal[k] = u[k] * r[k];
-  constexpr double kLeast_mps2 = 0.5;
-  constexpr std::size_t kEnough = 50;
-  std::optional<std::string> note;
-  const GridSignal& accel = signals[DriveSignal::kAccelY];
-  if (accel.available()) {
-    // In quick transients a_y is not u r: the lateral velocity changes too.
-    const Relation relation = relate(two_second_means(centripetal, signals.grid.step),
-                                     two_second_means(accel.value, signals.grid.step), kLeast_mps2);
-    if (relation.count >= kEnough && relation.correlation < -0.5) {
-      throw InputError(signals.source,
-                       "accel_y goes against yaw_rate x speed: one of them points the other way (check data.frame, or "
-                       "give the channel scale = -1 in [data.map])");
-    }
-    if (relation.count >= kEnough && relation.correlation > 0.5 && !(relation.slope > 0.6 && relation.slope < 1.67)) {
-      note = fmt::format("accel_y is {:.2f} times yaw_rate x speed: a unit, a scale or the place of a sensor is wrong",
-                         relation.slope);
-    }
-  }
-  const GridSignal& steer = signals[DriveSignal::kSteer];
-  if (steer.available()) {
-    const Relation relation = relate(centripetal, steer.value, kLeast_mps2);
-    if (relation.count >= kEnough && relation.correlation < -0.7) {
-      throw InputError(signals.source,
-                       "steer goes against the yaw rate: one of them points the other way (left must be positive; "
-                       "check data.frame, or give the channel scale = -1 in [data.map])");
-    }
-  }
-  return note;
-}
-
 }  // namespace
 
 DriveSignalOptions DriveSignalOptions::read(const StudyTable& table) {
@@ -338,7 +258,6 @@ DriveSignals prepare_drive_signals(const recording::MappedRecording& mapped, con
       out[DriveSignal::kRollRate] = as(DriveSignal::kRollRate, *rate);
   }
   if (const Channel* yaw = find_channel(mapped, "yaw")) out[DriveSignal::kYaw] = heading(*yaw, out.grid, options);
-  if (std::optional<std::string> note = check_signs(out)) out.notes.push_back(std::move(*note));
   return out;
 }
 

@@ -82,8 +82,7 @@ struct DriveSignals : recording::GridSignals<DriveSignal, kDriveSignals> {
 /// rear wheels (or, without them, the front wheels), yaw rate from `gyro_z`, lateral velocity from `sideslip`, or from
 /// speed, course and heading.
 /// @throws InputError when yaw rate, speed or steering is missing (the latter only with `needs_steer`), a signal holds
-/// no numeric values, the yaw rate is slower than 5 Hz, or accel_y goes against yaw_rate x speed (a sign or frame
-/// error).
+/// no numeric values, or the yaw rate is slower than 5 Hz.
 [[nodiscard]] DriveSignals prepare_drive_signals(const recording::MappedRecording& mapped,
                                                  const DriveSignalOptions& options, bool needs_steer = true);
 
