@@ -85,11 +85,15 @@ Evidence relation_row(const DriveRelation& r, const std::vector<DriveCulprit>& s
   } else if (!r.strong) {
     row.cause = Cause::kExcitation;
   }
-  const double gradient = leans ? *roll_gradient : (r.middle() - 1.0) / gravity;
   row.with("sensor", std::string(name_of(r.sensor))).with("against", r.against).with("low", r.low).with("high", r.high);
-  row.with("correlation", r.correlation).with("gradient", gradient).with("lean", gradient * gravity);
+  row.with("correlation", r.correlation);
+  if (row.cause == Cause::kGravity) {
+    const double gradient = leans ? *roll_gradient : (r.middle() - 1.0) / gravity;
+    row.with("gradient", gradient).with("lean", gradient * gravity);
+  }
+  if (row.passed()) return row;
+  if (!suspects.empty()) row.about = names_of(suspects, ", ");
   row.with("suspects", suspects.empty() ? std::string("one of the sensors") : names_of(suspects, " or "));
-  if (!row.passed() && !suspects.empty()) row.about = names_of(suspects, ", ");
   if (suspects.size() == 1) row.with("factor", suspects.front().factor).with("units", unit_of(suspects.front()));
   return row;
 }
