@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 
+#include "veridyn/estimation/judgement/check.hpp"
+
 namespace veridyn::test {
 namespace {
 
@@ -121,9 +123,9 @@ Trial tried(const Outcomes& faulty, const Outcomes& clean, bool found, std::span
   }
   const std::vector<Evidence> rows = deciding_rows(faulty.evidence, clean.evidence);
   const bool named = std::ranges::any_of(
-      rows, [&](const Evidence& row) { return names_one(words, row.about) || names_one(words, row.advice); });
+      rows, [&](const Evidence& row) { return names_one(words, row.about) || names_one(words, advice_of(row)); });
   trial.finding = named ? Finding::kNamed : Finding::kMisnamed;
-  if (!rows.empty()) trial.reason = fmt::format("{}: {}", rows.front().name, rows.front().text);
+  if (!rows.empty()) trial.reason = fmt::format("{}: {}", name_of(rows.front()), says(rows.front()));
   return trial;
 }
 

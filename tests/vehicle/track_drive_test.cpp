@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/support/channel_faults.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/vehicle/drive_with_drop.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -74,6 +76,20 @@ TEST(TrackedDrive, RefusesADriveWithoutALateralAcceleration) {
     if (channel.name != "accel_y") without.add(channel);
   Progress silent;
   EXPECT_THAT(why([&] { static_cast<void>(track(study_of(without), silent)); }), ::testing::HasSubstr("accel_y"));
+}
+
+// A tracker has no model whose delay it could find; what signals tell is coarser than what moves the stiffnesses.
+TEST(TrackedDrive, DoesNotVerifyThatTheSteeringIsInTime) {
+  for (const double late_s : {0.0, 0.03}) {
+    Recording whole = drive_with_drop(4, 70.0, 1e9);
+    test::delayed({"steer"}, late_s)(whole);
+    Progress silent;
+    const estimation::Estimate estimate = track(study_of(whole), silent).drive.estimate();
+    const auto row =
+        std::ranges::find(estimate.evidence, estimation::Check::kSteeringOrder, &estimation::Evidence::check);
+    ASSERT_NE(row, estimate.evidence.end()) << late_s;
+    EXPECT_EQ(row->outcome, estimation::Outcome::kNotVerified) << late_s << ": " << says(*row);
+  }
 }
 
 TEST(HistoryRecording, HoldsWhatTheTrackerFollowed) {

@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "tests/support/channel_faults.hpp"
 #include "tests/vehicle/simulated_drive.hpp"
 #include "veridyn/estimation/judgement/check.hpp"
 
@@ -81,6 +82,25 @@ TEST(VehicleStudy, AnotherDriveHoldsForTheSameCarAndNotForAnother) {
   EXPECT_EQ(other.identification.verdict, estimation::GroupVerdict::kRejected);
   EXPECT_EQ(other.estimate.judgement.prediction.grade, estimation::Grade::kNo);
   EXPECT_THAT(other.identification.reason, ::testing::StartsWith("does not hold"));
+}
+
+// The verdict follows from the same rows as the grade: yaw rates are predicted as well as ever, but the drive
+// contradicts itself.
+TEST(VehicleStudy, ADriveThatContradictsItselfHoldsForNoCar) {
+  const VehicleParameters<double> p = family_car();
+  Recording recording = record_drive(lively_drive(p, 9, 0.02, 30.0), reference_drive_sensors(), 9);
+  test::scaled({"accel_y"}, 0.1)(recording);
+  Progress silent;
+  const VehicleStudy drive = vehicle::read_study(
+      Study::parse("seed = 3\n[subject]\nkind = \"vehicle\"\nmass = 1500\na = 1.2\nb = 1.5\n", "study.toml"), recording,
+      silent);
+  const VehicleAnalysis analysis = validate(drive, given_values({p.C_f, p.C_r, p.I_z}, kAllIdentified), silent);
+  const VehicleIdentification& id = analysis.identification;
+  EXPECT_EQ(id.checks.front().outcome, estimation::Outcome::kPassed) << says(id.checks.front());
+  EXPECT_EQ(id.judgement.prediction.grade, estimation::Grade::kNo);
+  EXPECT_EQ(id.verdict, estimation::GroupVerdict::kRejected);
+  EXPECT_THAT(id.reason, ::testing::StartsWith("does not hold"));
+  EXPECT_EQ(id.judgement.parameters.grade, estimation::Grade::kNotJudged) << "nothing was identified";
 }
 
 // A vehicle is rejected as a whole, but what was not excited or was given keeps that status.
