@@ -106,8 +106,9 @@ estimation::Estimate tracked_estimate(const Recording& recording) {
 TEST(DriveTrackerRows, PassForACarThatDoesNotChange) {
   const estimation::Estimate estimate = tracked_estimate(drive_with_drop(3, 100.0, 1e9));
   for (const std::string_view axle : kTrackedAxleNames) {
-    for (const char* name : {"residual beyond the sensors", "residual autocorrelation", "collinearity", "excitation",
-                             "agreement of the recording's parts", "changes", "prediction of the next row"}) {
+    for (const char* name :
+         {"residual beyond the sensors", "correlation of the innovations", "collinearity", "excitation of the memory",
+          "agreement of the recording's parts", "changes", "prediction of the next row"}) {
       const estimation::Evidence* row = tracked_row(estimate, name, axle);
       ASSERT_NE(row, nullptr) << name << " of " << axle;
       EXPECT_TRUE(row->passed() || row->bears_on.empty()) << name << " of " << axle << ": " << row->text;
