@@ -131,7 +131,7 @@ TEST(DriveTrackerRows, SayThatGripDroppedAndWhatIsNotExcited) {
   EXPECT_TRUE(found);
   EXPECT_EQ(wet.judgement.parameters.grade, estimation::Grade::kWithCare);
   const estimation::Estimate straight = tracked_estimate(drive_with_drop(1, 40.0, 1e9, 1e-4));
-  EXPECT_EQ(tracked_row(straight, "excitation", "C_f")->outcome, estimation::Outcome::kCare);
+  EXPECT_EQ(tracked_row(straight, "excitation of the memory", "C_f")->outcome, estimation::Outcome::kCare);
 }
 
 // A steering sensor of the wrong sign, which a whole recording is refused for: to turn that way, the front tyres would
