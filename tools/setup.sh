@@ -8,7 +8,7 @@ packages=(
   libcli11-dev libfmt-dev libpugixml-dev libmuparser-dev libgtest-dev libgmock-dev libbenchmark-dev libsimbody-dev coinor-libipopt-dev
   libasio-dev libevdev-dev libcpp-httplib-dev libopencv-core-dev libopencv-imgproc-dev libopencv-videoio-dev
   clang-14 clang-format-14 clang-format clang-tidy-14 clang-tidy libclang-rt-14-dev
-  chromium doxygen libopenmpi-dev openmpi-bin iproute2 python3-venv
+  chromium doxygen libopenmpi-dev openmpi-bin iproute2 python3-venv python3-jsonschema
 )
 # The report's plots need Node 18 or later, wherever it comes from; Debian's will do.
 if ! command -v node >/dev/null || ! command -v npm >/dev/null; then packages+=(nodejs npm); fi

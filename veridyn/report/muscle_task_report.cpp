@@ -50,24 +50,14 @@ std::vector<Fact> task_facts(const TaskStudy& study, const MuscleAnalysis& a) {
   return list;
 }
 
-/// The word of the report for a parameter whose estimate may be used, else that of its status.
-Cell verdict_cell(const MuscleAnalysis& a, std::size_t i, const estimation::Parameter& p) {
-  using estimation::ParameterStatus;
-  const bool open = p.status == ParameterStatus::kNotExcited || p.status == ParameterStatus::kWeak;
-  if (open && i < a.result.verdicts.size())
-    return status_cell(status_of(p.status), std::string(to_string(a.result.verdicts[i])));
-  return status_cell(status_of(p.status));
-}
-
 Section muscle_parameters(const TaskStudy& study, const MuscleAnalysis& a) {
   Section section{.title = "Parameters", .id = "parameters"};
   const bool truth = !a.truth.empty();
   Table table{.title = "Parameters",
               .caption =
                   "95 % intervals, priors included. Learned: the share of the prior's variance that the tasks removed. "
-                  "Identified from three quarters on, weak from a quarter on; what is less is the prior's: held by the "
-                  "prior where the tasks hardly move with the parameter, not identifiable where they move as much with "
-                  "others.",
+                  "Identified from three quarters on, weak from a quarter on; what is less is the prior's, and not "
+                  "excited: the tasks hardly move with the parameter, or as much with others.",
               .columns = {{.name = "parameter", .align = Align::kLeft},
                           {.name = ""},
                           {.name = "standard"},
@@ -83,11 +73,11 @@ Section muscle_parameters(const TaskStudy& study, const MuscleAnalysis& a) {
     const auto unknown = std::find_if(study.unknowns.begin(), study.unknowns.end(),
                                       [&](const MuscleUnknown& u) { return u.name == p.name; });
     const double start = unknown != study.unknowns.end() ? unknown->start : kNaN;
-    Row row{.cells = {text_cell(p.name), verdict_cell(a, i, p), measured_cell(start, p.sigma)}};
+    Row row{.cells = {text_cell(p.name), status_cell(status_of(p.status)), measured_cell(start, p.sigma)}};
     for (Cell& cell : interval_cells(p.value, p.sigma, p.low95, p.high95)) row.cells.push_back(std::move(cell));
     if (truth) row.cells.insert(row.cells.begin() + 4, measured_cell(a.true_value(p.name), p.sigma));
     row.cells.push_back(text_cell(p.unit == "1" ? "" : p.unit));
-    row.cells.push_back(number_cell(i < a.result.verdicts.size() ? 100.0 * a.result.learned(i) : kNaN));
+    row.cells.push_back(number_cell(i < at(a.result.learned.size()) ? 100.0 * a.result.learned(i) : kNaN));
     row.status = status_of(p.status);
     table.rows.push_back(std::move(row));
   }

@@ -57,9 +57,6 @@ Summary summary_of_tasks(const MuscleAnalysis& analysis, const std::filesystem::
   s["grades"] = grades_summary(analysis.estimate.judgement);
   s["reason"] = analysis.groups.front().reason;
   s["seconds"] = analysis.result.seconds;
-  s["words"] = Summary::object();
-  for (std::size_t i = 0; i < analysis.result.verdicts.size(); ++i)
-    s["words"][analysis.estimate.parameters[i].name] = to_string(analysis.result.verdicts[i]);
   s["null_directions"] = analysis.result.null_directions;
   if (!analysis.profiles.profiles.empty()) s["profiles"] = profiles_summary(analysis.profiles);
   if (analysis.posterior.usable()) s["posterior"] = posterior_summary(analysis.posterior);
@@ -88,11 +85,9 @@ void publish_muscles(const StudyRun& run, OutputFolder& folder, const TaskStudy&
   folder.publish(record, options, summary_of_tasks(analysis, folder.path()));
 
   print_judgement(options, analysis.estimate);
-  for (std::size_t i = 0; i < analysis.result.verdicts.size(); ++i) {
-    const estimation::Parameter& p = analysis.estimate.parameters[i];
+  for (const estimation::Parameter& p : analysis.estimate.parameters)
     print_line(options, fmt::format("  {:<40} {:>10.5g} +- {:<9.2g} {:<5} {}", p.name, p.value, p.sigma, p.unit,
-                                    to_string(analysis.result.verdicts[i])));
-  }
+                                    to_string(p.status)));
   for (const std::string& direction : analysis.result.null_directions)
     print_line(options, "  left to the priors: " + direction);
   print_profiles(options, analysis.profiles, 40);

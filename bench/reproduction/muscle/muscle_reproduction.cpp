@@ -120,8 +120,8 @@ void compare_parameters(const MuscleAnalysis& a, const TaskStudy& study, Compare
     const double error = (p.value - truth) / truth;
     squares += error * error;
     count += 1.0;
-    if (a.result.verdicts[i] == TaskVerdict::kAtBound) ++person.at_bound;
-    if (a.result.verdicts[i] != TaskVerdict::kIdentified) continue;
+    if (a.result.best.parameters[i].status == estimation::ParameterStatus::kAtBound) ++person.at_bound;
+    if (a.result.best.parameters[i].status != estimation::ParameterStatus::kIdentified) continue;
     ++person.identified;
     const estimation::Parameter* shown = estimation::find_parameter(a.groups.front().parameters, p.name);
     if (truth >= shown->low95 && truth <= shown->high95) ++person.covered;

@@ -80,12 +80,12 @@ TEST(IdentificationRows, FindAMomentThatNoTermMakes) {
 // more than noise.
 TEST(IdentificationRows, FindAnElevatorThatMovesWithAlpha) {
   const auto collinearity = [](double unmodelled) {
-    return row_in(cm_of({.unmodelled = unmodelled, .follows_alpha = 0.9}), "collinearity");
+    return row_in(cm_of({.unmodelled = unmodelled, .follows_alpha = 0.9}), "variance inflation");
   };
   EXPECT_EQ(collinearity(0.02).outcome, Outcome::kCare);
-  EXPECT_THAT(collinearity(0.02).text, HasSubstr("Cm_alpha, Cm_de"));
+  EXPECT_EQ(std::get<std::string>(collinearity(0.02).figure("names")->value), "Cm_alpha, Cm_de");
   EXPECT_EQ(collinearity(0.0).outcome, Outcome::kPassed);
-  EXPECT_THAT(collinearity(0.0).text, HasSubstr("no larger than sensor noise"));
+  EXPECT_EQ(collinearity(0.0).cause, estimation::Cause::kCollinear) << "and the intervals hold";
 }
 
 }  // namespace

@@ -7,7 +7,9 @@
 #include <numbers>
 #include <random>
 
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/estimation/judgement/judgement.hpp"
+#include "veridyn/estimation/regression/regression_evidence.hpp"
 
 namespace veridyn::estimation {
 namespace {
@@ -55,17 +57,17 @@ std::vector<Evidence> tracking_rows(const RegressionTracker& tracker) {
   return tracking_evidence("C", tracker, tracker.estimate());
 }
 
-Evidence tracking_row(const RegressionTracker& tracker, const std::string& name) {
+Evidence tracking_row(const RegressionTracker& tracker, Check check) {
   const std::vector<Evidence> rows = tracking_rows(tracker);
-  const auto found = std::ranges::find(rows, name, &Evidence::name);
-  if (found == rows.end()) throw std::logic_error("no row " + name);
+  const auto found = std::ranges::find(rows, check, &Evidence::check);
+  if (found == rows.end()) throw std::logic_error("no row " + std::string(to_string(check)));
   return *found;
 }
 
 TEST(TrackingEvidence, LetsARegressionPassThatIsAsItsNoiseSays) {
   const RegressionTracker tracker = tracked_regression({});
   for (const Evidence& row : tracking_rows(tracker)) {
-    EXPECT_TRUE(row.passed()) << row.name << ": " << row.text;
+    EXPECT_TRUE(row.passed()) << name_of(row) << ": " << says(row);
     EXPECT_EQ(row.about, "C");
   }
   const Judgement j = judge(tracking_rows(tracker));
@@ -75,45 +77,47 @@ TEST(TrackingEvidence, LetsARegressionPassThatIsAsItsNoiseSays) {
 }
 
 TEST(TrackingEvidence, FindsAResidualBeyondTheSensors) {
-  EXPECT_EQ(tracking_row(tracked_regression({.noise = 0.25}), "residual beyond the sensors").outcome, Outcome::kCare);
+  EXPECT_EQ(tracking_row(tracked_regression({.noise = 0.25}), Check::kResidualBeyondSensors).outcome, Outcome::kCare);
   // A term that the model lacks carries much of the variance.
-  const Evidence row = tracking_row(tracked_regression({.quadratic = 1.0}), "residual beyond the sensors");
-  EXPECT_EQ(row.outcome, Outcome::kFailed) << row.text;
+  const Evidence row = tracking_row(tracked_regression({.quadratic = 1.0}), Check::kUnmodelledShare);
+  EXPECT_EQ(row.outcome, Outcome::kFailed) << says(row);
 }
 
 TEST(TrackingEvidence, SaysWhatIsHeld) {
-  const Evidence row = tracking_row(tracked_regression({.y_moves = 0.0}), "excitation");
+  const Evidence row = tracking_row(tracked_regression({.y_moves = 0.0}), Check::kTrackedExcitation);
   EXPECT_EQ(row.outcome, Outcome::kCare);
-  EXPECT_NE(row.text.find("b"), std::string::npos) << row.text;
+  EXPECT_EQ(row.cause, Cause::kExcitation);
+  EXPECT_NE(says(row).find("b"), std::string::npos) << says(row);
 }
 
 TEST(TrackingEvidence, NamesRegressorsThatMoveTogether) {
   // With more than sensor noise in the residual collinearity matters.
-  const Evidence row = tracking_row(tracked_regression({.noise = 0.25, .y_follows_x = 0.8}), "collinearity");
-  EXPECT_EQ(row.outcome, Outcome::kCare) << row.text;
-  EXPECT_NE(row.text.find("a, b"), std::string::npos) << row.text;
-  const Evidence quiet = tracking_row(tracked_regression({.y_follows_x = 0.8}), "collinearity");
-  EXPECT_EQ(quiet.outcome, Outcome::kPassed) << quiet.text;
-  EXPECT_NE(quiet.text.find("no larger than sensor noise"), std::string::npos) << quiet.text;
+  const Evidence row = tracking_row(tracked_regression({.noise = 0.25, .y_follows_x = 0.8}), Check::kVarianceInflation);
+  EXPECT_EQ(row.outcome, Outcome::kCare) << says(row);
+  EXPECT_EQ(row.cause, Cause::kCollinear);
+  EXPECT_EQ(std::get<std::string>(row.figure("names")->value), "a, b");
+  const Evidence quiet = tracking_row(tracked_regression({.y_follows_x = 0.8}), Check::kVarianceInflation);
+  EXPECT_EQ(quiet.outcome, Outcome::kPassed) << says(quiet);
+  EXPECT_EQ(quiet.cause, Cause::kCollinear) << "known, but the residual is no larger than sensor noise";
 }
 
 TEST(TrackingEvidence, SaysThatNeighbouringRowsCorrelate) {
-  const Evidence row = tracking_row(tracked_regression({.noise_rho = 0.8}), "residual autocorrelation");
-  EXPECT_EQ(row.outcome, Outcome::kCare) << row.text;
+  const Evidence row = tracking_row(tracked_regression({.noise_rho = 0.8}), Check::kInnovationCorrelation);
+  EXPECT_EQ(row.outcome, Outcome::kCare) << says(row);
   EXPECT_GT(row.value, 0.2);
   EXPECT_TRUE(row.bears_on.empty()) << "the error bars allow for it";
 }
 
 TEST(TrackingEvidence, SaysWhichChangesWereFound) {
-  const Evidence none = tracking_row(tracked_regression({.detect = true}), "changes");
-  EXPECT_EQ(none.outcome, Outcome::kPassed) << none.text;
+  const Evidence none = tracking_row(tracked_regression({.detect = true}), Check::kChanges);
+  EXPECT_EQ(none.outcome, Outcome::kPassed) << says(none);
   const RegressionTracker tracker = tracked_regression({.detect = true, .jump_s = 250.0});
-  const Evidence row = tracking_row(tracker, "changes");
-  EXPECT_EQ(row.outcome, Outcome::kCare) << row.text;
+  const Evidence row = tracking_row(tracker, Check::kChanges);
+  EXPECT_EQ(row.outcome, Outcome::kCare) << says(row);
   ASSERT_FALSE(tracker.changes().empty());
   EXPECT_NEAR(tracker.changes().front().detected_s, 250.0, 10.0);
   EXPECT_EQ(judge(tracking_rows(tracker)).parameters.grade, Grade::kWithCare);
-  EXPECT_EQ(tracking_row(tracked_regression({}, 100.0), "changes").outcome, Outcome::kNotVerified)
+  EXPECT_EQ(tracking_row(tracked_regression({}, 100.0), Check::kChanges).outcome, Outcome::kNotVerified)
       << "they were not looked for";
 }
 
@@ -121,7 +125,7 @@ TEST(TrackingEvidence, IsMissingBeforeThereIsAnEstimate) {
   const RegressionTracker tracker = tracked_regression({}, 0.1);
   const std::vector<Evidence> rows = tracking_rows(tracker);
   ASSERT_EQ(rows.size(), 1U);
-  EXPECT_EQ(rows.front().name, "estimate");
+  EXPECT_EQ(rows.front().check, Check::kTrackedEstimate);
   EXPECT_EQ(rows.front().outcome, Outcome::kMissing);
   EXPECT_EQ(judge(rows).parameters.grade, Grade::kNotJudged);
   EXPECT_EQ(judge(rows).prediction.grade, Grade::kNotJudged);
@@ -134,8 +138,9 @@ TEST(TrackingEvidence, RefusesAParameterWithoutAStandardError) {
     estimate.parameters[1].sigma = sigma;
     estimate.parameters[1].status = status;
     const std::vector<Evidence> rows = tracking_evidence("C", tracker, estimate);
-    return std::ranges::count_if(
-        rows, [](const Evidence& row) { return row.name == "standard error" && row.outcome == Outcome::kFailed; });
+    return std::ranges::count_if(rows, [](const Evidence& row) {
+      return row.check == Check::kStandardError && row.outcome == Outcome::kFailed;
+    });
   };
   EXPECT_EQ(failed(0.01, ParameterStatus::kIdentified), 0);
   EXPECT_EQ(failed(0.0, ParameterStatus::kIdentified), 1);
@@ -145,21 +150,19 @@ TEST(TrackingEvidence, RefusesAParameterWithoutAStandardError) {
 
 TEST(TrackingEvidence, FindsParametersThatDrift) {
   const RegressionTracker tracker = tracked_regression({.end_slope = 0.6});
-  const Evidence row = tracking_row(tracker, "agreement of the recording's parts");
-  EXPECT_EQ(row.outcome, Outcome::kFailed) << row.text;
+  const Evidence row = tracking_row(tracker, Check::kTrackedParts);
+  EXPECT_EQ(row.outcome, Outcome::kFailed) << says(row);
   // What is not constant gets the interval that its scatter shows.
   EXPECT_GT(tracker.estimate().parameters[1].sigma, 3.0 * tracker.regression().sigma()(1));
 }
 
 TEST(TrackingEvidence, CannotCompareWhatIsShorterThanTwoMemories) {
-  EXPECT_EQ(tracking_row(tracked_regression({}, 150.0), "agreement of the recording's parts").outcome,
-            Outcome::kNotVerified);
+  EXPECT_EQ(tracking_row(tracked_regression({}, 150.0), Check::kTrackedParts).outcome, Outcome::kNotVerified);
 }
 
 TEST(TrackingEvidence, DoesNotCallAPredictionWhatPredictsNothing) {
-  const Evidence row =
-      tracking_row(tracked_regression({.noise = 0.4, .share_of_z = 0.1}), "prediction of the next row");
-  EXPECT_EQ(row.outcome, Outcome::kFailed) << row.text;
+  const Evidence row = tracking_row(tracked_regression({.noise = 0.4, .share_of_z = 0.1}), Check::kNextRow);
+  EXPECT_EQ(row.outcome, Outcome::kFailed) << says(row);
 }
 
 /// Rows that are less than passed, and bear on something, in so many clean recordings.

@@ -3,7 +3,9 @@
 
 #include "tests/estimation/regression/four_parameters.hpp"
 #include "tests/estimation/simulated_regression.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/estimation/regression/regression.hpp"
+#include "veridyn/estimation/regression/regression_evidence.hpp"
 
 namespace {
 using namespace veridyn::estimation;
@@ -26,12 +28,14 @@ RegressionData with_dependent_column(const RegressionData& s) {
   return data;
 }
 
-/// The row of a name, which must be there.
-Evidence check_named(const RegressionComparison& c, std::string_view name) {
-  const auto row = std::ranges::find(c.checks, name, &Evidence::name);
-  if (row == c.checks.end()) throw std::logic_error("no row " + std::string(name));
+/// The row of a check, which must be there.
+Evidence row_in(const RegressionComparison& c, Check check) {
+  const auto row = std::ranges::find(c.checks, check, &Evidence::check);
+  if (row == c.checks.end()) throw std::logic_error("no row " + std::string(to_string(check)));
   return *row;
 }
+
+Evidence collinearity_in(const RegressionComparison& c) { return collinearity(*c.examined_estimate()); }
 
 TEST(Compare, RecommendsGtlsWhenItsAssumptionsHold) {
   const auto s = simulate_regression(1, regression_theta(), errors(0.1, 0.1));
@@ -102,9 +106,7 @@ TEST(Compare, JudgesWhatIsEstimatedWhereADirectionIsHeld) {
   EXPECT_EQ(c.recommended, Method::kPcaGtls);
   ASSERT_EQ(c.best()->unexcited.size(), 1u);
   EXPECT_NEAR(c.best()->find("theta2")->value, regression_theta()(2), 0.01);
-  const auto row = std::ranges::find(c.checks, "collinearity", &Evidence::name);
-  ASSERT_NE(row, c.checks.end());
-  EXPECT_TRUE(row->passed()) << row->text;
+  EXPECT_TRUE(collinearity_in(c).passed()) << says(collinearity_in(c));
 }
 
 // What moves together beside it is still named, and nothing else.
@@ -114,11 +116,9 @@ TEST(Compare, NamesCollinearRegressorsBesideADirectionThatIsHeld) {
   s.data.regressors.col(3) = s.data.regressors.col(2) + 0.15 * before;
   s.data.regressand += regression_theta()(3) * (s.data.regressors.col(3) - before);
   const RegressionComparison c = compare(with_dependent_column(s.data));
-  const auto row = std::ranges::find(c.checks, "collinearity", &Evidence::name);
-  ASSERT_NE(row, c.checks.end());
-  EXPECT_FALSE(row->passed());
-  EXPECT_NE(row->text.find("theta2, theta3"), std::string::npos) << row->text;
-  EXPECT_EQ(row->text.find("theta1"), std::string::npos) << row->text;
+  const Evidence row = collinearity_in(c);
+  EXPECT_FALSE(row.passed());
+  EXPECT_EQ(std::get<std::string>(row.figure("names")->value), "theta2, theta3");
 }
 
 // Noise as W says, small enough that OLS is as good.
@@ -126,10 +126,11 @@ TEST(CompareRows, LetARegressionPassThatIsAsItsNoiseSays) {
   int autocorrelated = 0;
   for (unsigned seed = 1; seed <= 40; ++seed) {
     const RegressionComparison c = compare(simulate_regression(seed, regression_theta(), errors(1e-3, 0.01)).data);
-    for (const char* name : {"collinearity", "agreement of OLS", "error scale", "sensitivity to the error ratio"})
-      EXPECT_EQ(check_named(c, name).outcome, Outcome::kPassed) << name << ": " << check_named(c, name).text;
-    autocorrelated += check_named(c, "residual autocorrelation").passed() ? 0 : 1;
-    EXPECT_EQ(c.checks.size(), 5U);
+    for (const Check check : {Check::kOlsAgreement, Check::kErrorScale, Check::kErrorRatioSensitivity})
+      EXPECT_EQ(row_in(c, check).outcome, Outcome::kPassed) << says(row_in(c, check));
+    EXPECT_EQ(collinearity_in(c).outcome, Outcome::kPassed) << says(collinearity_in(c));
+    autocorrelated += row_in(c, Check::kResidualAutocorrelation).passed() ? 0 : 1;
+    EXPECT_EQ(c.checks.size(), 4U);
   }
   // A test at 5 %, for information: more than six of 40 in 1 % of all cases.
   EXPECT_LE(autocorrelated, 6);
@@ -137,12 +138,13 @@ TEST(CompareRows, LetARegressionPassThatIsAsItsNoiseSays) {
 
 TEST(CompareRows, FindAResidualThatIsCorrelated) {
   const auto row = [](double rho) {
-    return check_named(compare(simulate_regression(1, regression_theta(), errors(0.0, 0.01), {.error_rho = rho}).data),
-                       "residual autocorrelation");
+    return row_in(compare(simulate_regression(1, regression_theta(), errors(0.0, 0.01), {.error_rho = rho}).data),
+                  Check::kResidualAutocorrelation);
   };
-  EXPECT_EQ(row(0.0).outcome, Outcome::kPassed) << row(0.0).text;
+  EXPECT_EQ(row(0.0).outcome, Outcome::kPassed) << says(row(0.0));
   EXPECT_EQ(row(0.9).outcome, Outcome::kCare);
-  EXPECT_NEAR(row(0.9).value, 2.0 * (1.0 - 0.9), 0.1) << "Durbin-Watson of a first-order process";
+  EXPECT_NEAR(std::get<double>(row(0.9).figure("durbin_watson")->value), 2.0 * (1.0 - 0.9), 0.1)
+      << "Durbin-Watson of a first-order process";
   // The error bars are wide enough, so that no grade depends on it.
   EXPECT_TRUE(row(0.9).bears_on.empty());
 }
@@ -150,10 +152,9 @@ TEST(CompareRows, FindAResidualThatIsCorrelated) {
 // Regressors with a tenth of their variance in noise: OLS is attenuated, by many of its error bars.
 TEST(CompareRows, SayThatOlsIsBiasedByNoiseOfTheRegressors) {
   const Evidence row =
-      check_named(compare(simulate_regression(1, regression_theta(), errors(0.1, 0.1)).data), "agreement of OLS");
+      row_in(compare(simulate_regression(1, regression_theta(), errors(0.1, 0.1)).data), Check::kOlsAgreement);
   EXPECT_EQ(row.outcome, Outcome::kCare);
   EXPECT_GT(row.value, 5.0);
-  EXPECT_THAT(row.text, testing::HasSubstr("errors of the regressors matter"));
 }
 
 TEST(CompareRows, CompareTheResidualWithTheAssumedErrors) {
@@ -162,15 +163,15 @@ TEST(CompareRows, CompareTheResidualWithTheAssumedErrors) {
     s.data.error_covariance *= factor;
     return compare(s.data);
   };
-  // Known to a factor of two.
-  for (const double factor : {0.6, 1.0, 1.7})
-    EXPECT_EQ(check_named(with(factor), "error scale").outcome, Outcome::kPassed) << factor;
+  // Standard deviations are known to a factor of two.
+  for (const double factor : {0.3, 1.0, 3.4})
+    EXPECT_EQ(row_in(with(factor), Check::kErrorScale).outcome, Outcome::kPassed) << factor;
   for (const double factor : {0.2, 5.0}) {
-    const Evidence row = check_named(with(factor), "error scale");
+    const Evidence row = row_in(with(factor), Check::kErrorScale);
     EXPECT_EQ(row.outcome, Outcome::kCare) << factor;
     EXPECT_NEAR(row.value, 1.0 / factor, 0.15 / factor);
     // All errors by the same factor leave their ratio, so that the estimate stays and a method is recommended.
-    EXPECT_EQ(check_named(with(factor), "sensitivity to the error ratio").outcome, Outcome::kPassed) << factor;
+    EXPECT_EQ(row_in(with(factor), Check::kErrorRatioSensitivity).outcome, Outcome::kPassed) << factor;
     EXPECT_TRUE(with(factor).recommends) << with(factor).reason;
   }
 }
@@ -179,23 +180,41 @@ TEST(CompareRows, CompareTheResidualWithTheAssumedErrors) {
 TEST(CompareRows, SayThatTheEstimateDependsOnTheErrorRatio) {
   auto s = simulate_regression(3, regression_theta(), errors(1e-4, 1.0));
   s.data.error_covariance = errors(0.05, 0.01);
-  const Evidence row = check_named(compare(s.data), "sensitivity to the error ratio");
+  const Evidence row = row_in(compare(s.data), Check::kErrorRatioSensitivity);
   EXPECT_EQ(row.outcome, Outcome::kCare);
   EXPECT_GT(row.value, row.limit);
-  EXPECT_THAT(row.text, testing::HasSubstr("error of the equation alone"));
+  EXPECT_EQ(row.cause, Cause::kMissingTerm);
 }
 
 TEST(CompareRows, NameRegressorsThatMoveTogether) {
   auto s = simulate_regression(5, regression_theta(), errors(0.0, 0.01));
-  EXPECT_EQ(check_named(compare(s.data), "collinearity").outcome, Outcome::kPassed);
+  EXPECT_EQ(collinearity_in(compare(s.data)).outcome, Outcome::kPassed);
   s.data.regressors.col(3) = s.data.regressors.col(2) + 0.15 * s.data.regressors.col(3);
   s.data.regressand = s.data.regressors * regression_theta();
-  const Evidence row = check_named(compare(s.data), "collinearity");
+  const Evidence row = collinearity_in(compare(s.data));
   EXPECT_EQ(row.outcome, Outcome::kCare);
   // 1/(1 - R^2) of theta3, whose own part has 0.15^2 of theta2's variance.
-  EXPECT_THAT(row.text, testing::HasSubstr("theta2, theta3 move together"));
+  EXPECT_THAT(says(row), testing::HasSubstr("theta2, theta3 move together"));
   EXPECT_TRUE(row.bears_on.contains(Purpose::kParameters));
   EXPECT_FALSE(row.bears_on.contains(Purpose::kPrediction));
+}
+
+// Condition number with two columns that differ by a share d: 2/d.
+TEST(Collinearity, IsWithCareAndFailsByTheConditionNumber) {
+  const auto row = [](double own, bool noise_alone = false) {
+    auto s = simulate_regression(5, regression_theta(), errors(0.0, 0.01));
+    s.data.regressors.col(3) = s.data.regressors.col(2) + own * s.data.regressors.col(3);
+    return collinearity(*compare(s.data).examined_estimate(), noise_alone);
+  };
+  EXPECT_EQ(row(1e-3).check, Check::kVarianceInflation);
+  EXPECT_EQ(row(1e-3).outcome, Outcome::kCare);
+  EXPECT_EQ(row(1e-3, true).outcome, Outcome::kPassed) << "wide intervals hold";
+  const Evidence failed = row(1e-5);
+  EXPECT_EQ(failed.check, Check::kCollinearity);
+  EXPECT_EQ(failed.outcome, Outcome::kFailed);
+  EXPECT_EQ(failed.limit, 1e4);
+  EXPECT_THAT(says(failed), testing::HasSubstr("theta2, theta3"));
+  EXPECT_EQ(row(1e-5, true).outcome, Outcome::kFailed) << "no sensor resolves that";
 }
 
 TEST(Compare, MarksInsignificantParametersWithoutZeroingThem) {

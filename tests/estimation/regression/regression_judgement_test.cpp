@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "tests/estimation/simulated_regression.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 
 namespace veridyn::estimation {
 namespace {
@@ -33,8 +34,8 @@ JudgedRegression judged(RegressionData data, const JudgedRegressionOptions& opti
   return judged_regression(std::move(data), options, silent);
 }
 
-Evidence row_of(const JudgedRegression& result, const char* name) {
-  const auto row = std::ranges::find(result.estimate.evidence, name, &Evidence::name);
+Evidence row_in(const JudgedRegression& result, Check check) {
+  const auto row = std::ranges::find(result.estimate.evidence, check, &Evidence::check);
   return row == result.estimate.evidence.end() ? Evidence{} : *row;
 }
 
@@ -44,7 +45,7 @@ TEST(RegressionJudgement, GradesAGoodTableYes) {
   EXPECT_EQ(result.groups.front().verdict, GroupVerdict::kIdentified) << result.estimate.verdict;
   EXPECT_EQ(result.estimate.judgement.parameters.grade, Grade::kYes);
   EXPECT_EQ(result.estimate.judgement.prediction.grade, Grade::kYes);
-  EXPECT_GT(row_of(result, "cross-validation").value, 0.5);
+  EXPECT_GT(row_in(result, Check::kCrossValidation).value, 0.5);
   for (std::size_t i = 0; i < 4; ++i)
     EXPECT_NEAR(result.estimate.parameters[i].value, kTruth(i), 4.0 * result.estimate.parameters[i].sigma);
 }
@@ -75,9 +76,9 @@ TEST(RegressionJudgement, NamesRegressorsThatMoveTogether) {
   const RegressionData apart = made_rows(3, {.rows = 400});
   data.regressors.col(3) = data.regressors.col(1) + 1e-3 * apart.regressors.col(3);
   const JudgedRegression result = judged(std::move(data));
-  const Evidence row = row_of(result, "collinearity");
+  const Evidence row = row_in(result, Check::kVarianceInflation);
   EXPECT_EQ(row.outcome, Outcome::kCare);
-  EXPECT_THAT(row.text, ::testing::HasSubstr("a, c"));
+  EXPECT_EQ(std::get<std::string>(row.figure("names")->value), "a, c");
   EXPECT_NE(result.estimate.judgement.parameters.grade, Grade::kYes);
 }
 
@@ -85,7 +86,7 @@ TEST(RegressionJudgement, SaysThatPartsContradictEachOther) {
   RegressionData data = made_rows(4, {.rows = 400});
   for (Eigen::Index i = 200; i < 400; ++i) data.regressand(i) += 5.0 * data.regressors(i, 1);
   const JudgedRegression result = judged(std::move(data));
-  EXPECT_EQ(row_of(result, "agreement of the parts").outcome, Outcome::kFailed);
+  EXPECT_EQ(row_in(result, Check::kHalvesAgree).outcome, Outcome::kFailed);
   EXPECT_NE(result.groups.front().verdict, GroupVerdict::kIdentified);
 }
 
@@ -93,7 +94,7 @@ TEST(RegressionJudgement, RowsThatExplainNothingPredictNothing) {
   RegressionData data = made_rows(5, {.rows = 300});
   data.regressand = made_rows(6, {.rows = 300, .error_rho = 0.0}, 100.0).regressand.reverse().eval();
   const JudgedRegression result = judged(std::move(data));
-  EXPECT_EQ(row_of(result, "cross-validation").outcome, Outcome::kFailed);
+  EXPECT_EQ(row_in(result, Check::kCrossValidation).outcome, Outcome::kFailed);
   EXPECT_EQ(result.estimate.judgement.prediction.grade, Grade::kNo);
 }
 

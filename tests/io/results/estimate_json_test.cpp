@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "tests/io/support.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 
 namespace veridyn::io {
 namespace {
@@ -46,26 +47,33 @@ TEST(EstimateJson, IsReadAsItWasWrittenToTheLastBit) {
   EXPECT_THAT(read.warnings, ElementsAre("a line"));
 }
 
+TEST(EstimateJson, BeginsWithItsSchemaAndIsReadWithoutOne) {
+  const testing::TemporaryFolder folder;
+  const std::string text = to_json(two_parameters());
+  const std::string first = "{\n  \"schema\": 1,\n";
+  ASSERT_EQ(text.substr(0, first.size()), first);
+  const std::string rest = text.substr(first.size());
+  EXPECT_EQ(to_json(read_estimate(folder.write("old.json", "{\n" + rest))), text) << "of an earlier version";
+  const auto later = folder.write("later.json", "{\n  \"schema\": 2,\n" + rest);
+  EXPECT_THAT(message_of([&] { static_cast<void>(read_estimate(later)); }), HasSubstr("has schema 2"));
+}
+
 TEST(EstimateJson, KeepsGradesAndEvidence) {
   estimation::Estimate e = two_parameters();
   e.parameters[0].status = estimation::ParameterStatus::kEffective;
-  e.evidence = {{.name = "hold-out",
-                 .about = "CL",
-                 .outcome = estimation::Outcome::kMissing,
-                 .value = std::nan(""),
-                 .limit = 0.3,
-                 .scale = "R2",
-                 .text = "no hold-out",
-                 .bears_on = estimation::Purpose::kData | estimation::Purpose::kPrediction,
-                 .advice = "fly twice"}};
+  e.evidence = {row_of(estimation::Check::kCrossValidation, "CL", estimation::Outcome::kMissing).with("folds", 5.0)};
+  e.evidence[0].cause = estimation::Cause::kLength;
+  e.evidence[0].sigma = 0.1;
   e.judgement = estimation::judge(e.evidence);
   const testing::TemporaryFolder folder;
   const std::string text = to_json(e);
   const estimation::Estimate read = read_estimate(folder.write("estimate.json", text));
   EXPECT_EQ(to_json(read), text);
   EXPECT_EQ(read.judgement.prediction.grade, estimation::Grade::kNotJudged);
-  EXPECT_THAT(read.judgement.prediction.decided_by, ElementsAre("no hold-out"));
+  EXPECT_THAT(read.judgement.prediction.decided_by, ElementsAre(says(e.evidence[0])));
   ASSERT_EQ(read.evidence.size(), 1u);
+  EXPECT_EQ(read.evidence[0].check, estimation::Check::kCrossValidation);
+  EXPECT_EQ(read.evidence[0].cause, estimation::Cause::kLength);
   EXPECT_FALSE(read.evidence[0].bears_on.contains(estimation::Purpose::kParameters));
 }
 

@@ -51,7 +51,7 @@ TEST(EmgEstimate, FindsTheGainsWithinTheIntervalsOfTheMomentsNoise) {
   for (std::size_t i = 0; i < 2; ++i) {
     const estimation::Parameter& p = e.estimate.best.parameters[i];
     EXPECT_LT(std::abs(p.value - r.hidden()(signed_index(i))), 4.0 * p.sigma) << p.name;
-    EXPECT_EQ(e.estimate.verdicts[i], TaskVerdict::kIdentified) << p.name;
+    EXPECT_EQ(p.status, estimation::ParameterStatus::kIdentified) << p.name;
     EXPECT_LT(p.sigma, 0.05) << "and they are narrow";
   }
   // The residuals are in units of the noise.

@@ -11,6 +11,7 @@
 namespace veridyn::muscle {
 namespace {
 
+using estimation::ParameterStatus;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
@@ -47,8 +48,11 @@ TEST(TaskEstimate, SaysWhatTheTasksSayOfEachParameter) {
   const auto measured = model.recorded(kHidden, kTaskNoise);
   const Eigen::VectorXd noise = Eigen::VectorXd::Constant(1, kTaskNoise);
   const TaskEstimate alike = estimated(model, measured, noise);
-  EXPECT_THAT(alike.verdicts,
-              ElementsAre(TaskVerdict::kIdentified, TaskVerdict::kWeak, TaskVerdict::kWeak, TaskVerdict::kHeldByPrior));
+  const auto status = [](const TaskEstimate& e, std::size_t i) { return e.best.parameters[i].status; };
+  EXPECT_EQ(status(alike, 0), ParameterStatus::kIdentified);
+  EXPECT_EQ(status(alike, 1), ParameterStatus::kWeak);
+  EXPECT_EQ(status(alike, 2), ParameterStatus::kWeak);
+  EXPECT_EQ(status(alike, 3), ParameterStatus::kNotExcited);
   EXPECT_NEAR(alike.learned(1), 0.5, 0.01);
   ASSERT_THAT(alike.null_directions, SizeIs(2));
   EXPECT_THAT(alike.null_directions, ::testing::Contains(::testing::AnyOf("left against right", "right against left")));
@@ -59,8 +63,8 @@ TEST(TaskEstimate, SaysWhatTheTasksSayOfEachParameter) {
   const TaskEstimate unlike = estimated(model, measured, noise);
   EXPECT_NEAR(unlike.learned(1), 0.9, 0.01);
   EXPECT_NEAR(unlike.learned(2), 0.1, 0.01);
-  EXPECT_EQ(unlike.verdicts[1], TaskVerdict::kIdentified);
-  EXPECT_EQ(unlike.verdicts[2], TaskVerdict::kNotIdentifiable) << "the tasks move with it, and as much with left";
+  EXPECT_EQ(status(unlike, 1), ParameterStatus::kIdentified);
+  EXPECT_EQ(status(unlike, 2), ParameterStatus::kNotExcited) << "the tasks move with it, and as much with left";
 }
 
 TEST(TaskEstimate, LeavesWhatIsFixedAndStopsAtABound) {
@@ -70,9 +74,9 @@ TEST(TaskEstimate, LeavesWhatIsFixedAndStopsAtABound) {
   const TaskEstimate e =
       estimated(model, model.recorded(kHidden, kTaskNoise), Eigen::VectorXd::Constant(1, kTaskNoise));
   ASSERT_TRUE(e.usable());
-  EXPECT_EQ(e.verdicts[0], TaskVerdict::kAtBound);
+  EXPECT_EQ(e.best.parameters[0].status, ParameterStatus::kAtBound);
   EXPECT_EQ(e.best.theta(0), 1.1);
-  EXPECT_EQ(e.verdicts[2], TaskVerdict::kFixed);
+  EXPECT_EQ(e.best.parameters[2].status, ParameterStatus::kFixed);
   EXPECT_EQ(e.best.theta(2), 1.0);
 }
 
@@ -119,7 +123,7 @@ TEST(TaskEstimate, DescribesTheEndOfAnotherSearchWithoutMovingIt) {
   const test::NormalPosterior expected = test::posterior_of(model, measured, kTaskNoise);
   for (Eigen::Index i = 0; i < 4; ++i)
     EXPECT_NEAR(e.best.parameters[i].sigma, std::sqrt(expected.covariance(i, i)), 1e-6) << "as wide as anywhere";
-  EXPECT_EQ(e.verdicts[0], TaskVerdict::kIdentified);
+  EXPECT_EQ(e.best.parameters[0].status, ParameterStatus::kIdentified);
 }
 
 TEST(TaskEstimate, OptionsAreRefusedWithTheirRule) {

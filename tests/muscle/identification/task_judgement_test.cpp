@@ -8,12 +8,16 @@
 #include <stdexcept>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 
 namespace veridyn::muscle {
 namespace {
 
+using estimation::Cause;
+using estimation::Check;
 using estimation::Evidence;
 using estimation::Outcome;
+using estimation::ParameterStatus;
 using ::testing::HasSubstr;
 
 /// An estimate of two parameters from two tasks, with one more held out, that nothing is to be said against; each test
@@ -25,8 +29,8 @@ struct Findings {
 
   Findings() {
     for (const char* name : {"strength", "length"})
-      estimate.best.parameters.push_back({.name = name, .value = 1.0, .sigma = 0.01});
-    estimate.verdicts.assign(2, TaskVerdict::kIdentified);
+      estimate.best.parameters.push_back(
+          {.name = name, .value = 1.0, .sigma = 0.01, .status = ParameterStatus::kIdentified});
     for (int i = 0; i < 3; ++i) estimate.searches.push_back({.cost = 10.0, .agrees = true, .message = "converged"});
     estimate.chi_square = 1.0;
     estimate.freedom = 200.0;
@@ -47,55 +51,60 @@ struct Findings {
                         .noise_known = true,
                         .noise = 1e-3});
   }
-  [[nodiscard]] Evidence row(const std::string& name) const {
+  [[nodiscard]] Evidence row(Check check) const {
     const std::vector<Evidence> all = rows();
-    const auto found = std::find_if(all.begin(), all.end(), [&](const Evidence& r) { return r.name == name; });
-    if (found == all.end()) throw std::runtime_error("no row " + name);
+    const auto found = std::ranges::find(all, check, &Evidence::check);
+    if (found == all.end()) throw std::runtime_error("no row " + std::string(to_string(check)));
     return *found;
   }
 };
 
 TEST(JudgeTasks, AGoodEstimatePassesAllButWhatIsTakenAsGiven) {
   for (const Evidence& row : Findings().rows())
-    EXPECT_EQ(row.outcome, row.name == "what is taken as given" ? Outcome::kNotVerified : Outcome::kPassed) << row.name;
+    EXPECT_EQ(row.outcome, row.check == Check::kTakenAsGiven ? Outcome::kNotVerified : Outcome::kPassed) << says(row);
 }
 
 TEST(JudgeTasks, AParameterAtItsBoundHasARowOfItsOwn) {
   Findings f;
-  f.estimate.verdicts[1] = TaskVerdict::kAtBound;
-  const Evidence row = f.row("parameter at its bound");
+  f.estimate.best.parameters[1].status = ParameterStatus::kAtBound;
+  const Evidence row = f.row(Check::kAtBound);
   EXPECT_EQ(row.about, "length");
   EXPECT_EQ(row.outcome, Outcome::kCare);
-  EXPECT_THAT(row.text, HasSubstr("length ended at its bound 1 1"));
-  EXPECT_THAT(f.row(kDetermined).text, HasSubstr("1 of 2 parameters; not length"));
+  EXPECT_EQ(row.cause, Cause::kBound);
+  EXPECT_THAT(says(row), HasSubstr("length ended at its bound 1 1"));
+  const Evidence determined = f.row(Check::kDeterminedByTasks);
+  EXPECT_EQ(determined.outcome, Outcome::kCare);
+  EXPECT_EQ(determined.value, 1.0);
+  EXPECT_EQ(determined.limit, 2.0);
+  EXPECT_EQ(std::get<std::string>(determined.figure("open")->value), "length");
 }
 
 TEST(JudgeTasks, SearchesThatEndElsewhereWithAsGoodAFitAreSaidSo) {
   Findings f;
   f.estimate.searches[2].agrees = false;
-  EXPECT_THAT(f.row("searches agree").text, HasSubstr("the best of 3 searches is reported"));
-  EXPECT_EQ(f.row("searches agree").outcome, Outcome::kPassed);
+  EXPECT_EQ(f.row(Check::kSearchesAgree).value, 2.0);
+  EXPECT_EQ(f.row(Check::kSearchesAgree).outcome, Outcome::kPassed);
   f.estimate.ambiguous = true;
-  EXPECT_EQ(f.row("searches agree").outcome, Outcome::kCare);
-  EXPECT_THAT(f.row("searches agree").text, HasSubstr("more than one explanation"));
+  EXPECT_EQ(f.row(Check::kSearchesAgree).outcome, Outcome::kCare);
   for (TaskSearch& s : f.estimate.searches) s.cost = kNaN;
   f.estimate.searches[0].cost = 10.0;
-  EXPECT_EQ(f.row("searches agree").outcome, Outcome::kNotVerified);
+  EXPECT_EQ(f.row(Check::kSearchesAgree).outcome, Outcome::kNotVerified);
 }
 
 TEST(JudgeTasks, TasksInAWrapsFadingBandAreNamed) {
   Findings f;
   f.wraps = {"task 1: triceps_long is in a band", "task 2: biceps_long is in a band"};
-  EXPECT_EQ(f.row("wraps of muscles").outcome, Outcome::kCare);
-  EXPECT_THAT(f.row("wraps of muscles").text, HasSubstr("triceps_long is in a band (and 1 more)"));
+  EXPECT_EQ(f.row(Check::kWraps).outcome, Outcome::kCare);
+  EXPECT_THAT(says(f.row(Check::kWraps)), HasSubstr("triceps_long is in a band, the first of 2"));
 }
 
 TEST(JudgeTasks, ReservesThatCarryTooMuchAreNamedWithTheirTask) {
   Findings f;
   f.tasks[1].reserve_share = 0.12;
   f.tasks[2].reserve_share = 0.5;  // held out: nothing is estimated from it
-  EXPECT_EQ(f.row("torque that reserves carry").outcome, Outcome::kCare);
-  EXPECT_THAT(f.row("torque that reserves carry").text, HasSubstr("up to 12.0 % of what the muscles do (task 2)"));
+  EXPECT_EQ(f.row(Check::kReserves).outcome, Outcome::kCare);
+  EXPECT_EQ(f.row(Check::kReserves).value, 0.12);
+  EXPECT_THAT(says(f.row(Check::kReserves)), HasSubstr("(task 2)"));
 }
 
 TEST(JudgeTasks, TasksThatHardlyMoveOrCannotFinishAreNamed) {
@@ -103,38 +112,44 @@ TEST(JudgeTasks, TasksThatHardlyMoveOrCannotFinishAreNamed) {
   f.tasks[0].before.moves = false;
   f.tasks[1].estimated = {};
   f.unused = {"task 9: cannot be followed"};
-  const Evidence row = f.row("tasks");
-  EXPECT_EQ(row.outcome, Outcome::kCare);
-  EXPECT_THAT(row.text, HasSubstr("without an NRMSE: task 1"));
-  EXPECT_THAT(row.text, HasSubstr("1 of 3 simulations cannot finish"));
-  EXPECT_THAT(row.text, HasSubstr("left out: task 9"));
+  EXPECT_EQ(f.row(Check::kTasks).outcome, Outcome::kPassed);
+  for (const Check check : {Check::kStillTasks, Check::kUnfinishedTasks, Check::kUnusedTasks}) {
+    EXPECT_EQ(f.row(check).outcome, Outcome::kCare) << to_string(check);
+    EXPECT_EQ(f.row(check).value, 1.0) << to_string(check);
+  }
+  EXPECT_THAT(says(f.row(Check::kStillTasks)), HasSubstr("task 1"));
+  EXPECT_THAT(says(f.row(Check::kUnusedTasks)), HasSubstr("task 9"));
 }
 
 TEST(JudgeTasks, AResidualBeyondOrFarBelowTheNoiseIsSaidSo) {
   Findings f;
   f.estimate.chi_square = 4.0;
-  EXPECT_EQ(f.row("residual against the noise").outcome, Outcome::kFailed);
-  EXPECT_THAT(f.row("residual against the noise").text, HasSubstr("is 2 times the noise"));
+  EXPECT_EQ(f.row(Check::kTaskResidual).outcome, Outcome::kFailed);
+  EXPECT_EQ(f.row(Check::kTaskResidual).cause, Cause::kMissingTerm);
   f.estimate.chi_square = 1.45;
-  EXPECT_EQ(f.row("residual against the noise").outcome, Outcome::kCare);
+  EXPECT_EQ(f.row(Check::kTaskResidual).outcome, Outcome::kCare);
   f.estimate.chi_square = 0.25;
-  EXPECT_THAT(f.row("residual against the noise").text, HasSubstr("only 0.50 times"));
+  EXPECT_EQ(f.row(Check::kTaskResidual).outcome, Outcome::kCare);
+  EXPECT_EQ(f.row(Check::kTaskResidual).cause, Cause::kNoise);
   f.estimate.chi_square = 1.0;
   f.estimate.lag1 = 0.8;
-  EXPECT_EQ(f.row("correlation of the residual").outcome, Outcome::kCare);
+  EXPECT_EQ(f.row(Check::kResidualCorrelation).outcome, Outcome::kCare);
 }
 
 TEST(JudgeTasks, UnseenTasksAreMeasuredAgainstNoiseAndStandardModel) {
   Findings f;
   TaskOutcome& unseen = f.tasks[2];
   unseen.after.rmse = unseen.after.nrmse = 0.05;
-  EXPECT_EQ(f.row("hold-out").outcome, Outcome::kCare);
+  EXPECT_EQ(f.row(Check::kUnseenTasks).outcome, Outcome::kCare);
   unseen.after.rmse = unseen.after.nrmse = 0.2;
-  EXPECT_EQ(f.row("hold-out").outcome, Outcome::kFailed);
+  EXPECT_EQ(f.row(Check::kUnseenTasks).outcome, Outcome::kFailed);
+  EXPECT_EQ(f.row(Check::kBetterThanStandard).outcome, Outcome::kFailed);
+  EXPECT_TRUE(f.row(Check::kBetterThanStandard).bears_on.contains(estimation::Purpose::kParameters));
   unseen.after.rmse = unseen.after.nrmse = kNaN;
-  EXPECT_THAT(f.row("hold-out").text, HasSubstr("1 of 1 unseen tasks cannot be simulated"));
+  EXPECT_EQ(f.row(Check::kUnseenTasks).outcome, Outcome::kFailed);
+  EXPECT_EQ(f.row(Check::kUnseenTasks).cause, Cause::kMissing);
   f.tasks.pop_back();
-  EXPECT_EQ(f.row("hold-out").outcome, Outcome::kMissing);
+  EXPECT_EQ(f.row(Check::kUnseenTasks).outcome, Outcome::kMissing);
 }
 
 }  // namespace

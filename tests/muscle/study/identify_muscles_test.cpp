@@ -13,6 +13,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/muscle/identification/task_segments.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
 
@@ -34,10 +35,10 @@ MuscleAnalysis recovered(int seed, const std::string& text) {
   return identify(person_study(seed, text), progress);
 }
 
-const estimation::Evidence& row_of(const MuscleAnalysis& a, const std::string& name) {
+const estimation::Evidence& row_in(const MuscleAnalysis& a, estimation::Check check) {
   const auto found = std::find_if(a.estimate.evidence.begin(), a.estimate.evidence.end(),
-                                  [&](const estimation::Evidence& row) { return row.name == name; });
-  if (found == a.estimate.evidence.end()) throw std::runtime_error("no row " + name);
+                                  [&](const estimation::Evidence& row) { return row.check == check; });
+  if (found == a.estimate.evidence.end()) throw std::runtime_error("no row " + std::string(to_string(check)));
   return *found;
 }
 
@@ -53,13 +54,13 @@ TEST(IdentifyMuscles, FindsWhatIsHiddenAndPredictsUnseenTasks) {
   ASSERT_EQ(a.estimate.parameters.size(), 2u);
   for (std::size_t i = 0; i < 2; ++i) {
     const estimation::Parameter& p = a.estimate.parameters[i];
-    EXPECT_EQ(a.result.verdicts[i], TaskVerdict::kIdentified);
+    EXPECT_EQ(a.result.best.parameters[i].status, estimation::ParameterStatus::kIdentified);
     EXPECT_LT(std::abs(p.value - a.true_value(p.name)), 4.0 * p.sigma) << p.name;
     EXPECT_LT(p.sigma, 0.01 * p.value);
   }
-  EXPECT_EQ(row_of(a, "residual against the noise").outcome, estimation::Outcome::kPassed);
+  EXPECT_EQ(row_in(a, estimation::Check::kTaskResidual).outcome, estimation::Outcome::kPassed);
   EXPECT_NEAR(a.result.chi_square, 1.0, 0.25);
-  EXPECT_EQ(row_of(a, "hold-out").outcome, estimation::Outcome::kPassed);
+  EXPECT_EQ(row_in(a, estimation::Check::kUnseenTasks).outcome, estimation::Outcome::kPassed);
   EXPECT_EQ(a.groups.front().verdict, estimation::GroupVerdict::kIdentified);
   ASSERT_EQ(a.tasks.size(), 5u);
   EXPECT_TRUE(a.tasks.back().hold_out);
@@ -127,10 +128,10 @@ TEST(IdentifyMuscles, FarFromTheStandardModelWithParametersOpenTheyAreNoPhysical
   };
   const std::string search = "[identify]\nstarts = 1\nadvice = true\n";
   const MuscleAnalysis near = recovered(1, tasks + unknowns + person(0.03) + search);
-  EXPECT_EQ(row_of(near, kDistance).outcome, estimation::Outcome::kPassed);
+  EXPECT_EQ(row_in(near, estimation::Check::kDistanceFromStart).outcome, estimation::Outcome::kPassed);
   EXPECT_EQ(near.groups.front().verdict, estimation::GroupVerdict::kIdentified);
   const MuscleAnalysis far = recovered(1, tasks + unknowns + person(0.15) + search);
-  EXPECT_EQ(row_of(far, kDistance).outcome, estimation::Outcome::kFailed);
+  EXPECT_EQ(row_in(far, estimation::Check::kDistanceFromStart).outcome, estimation::Outcome::kFailed);
   EXPECT_EQ(far.estimate.judgement.parameters.grade, estimation::Grade::kNo);
   EXPECT_NE(far.groups.front().verdict, estimation::GroupVerdict::kIdentified);
   // More tasks are what helps: they are advised all the same.
@@ -148,8 +149,8 @@ TEST(IdentifyMuscles, CorrelatedNoiseIsFoundAndWidensIntervals) {
   EXPECT_NEAR(a.result.noise_correlation(0), std::exp(-0.5), 0.12);
   EXPECT_NEAR(a.result.chi_square, 1.0, 0.3);
   EXPECT_GT(a.result.lag1, 0.45);
-  EXPECT_EQ(row_of(a, "residual against the noise").outcome, estimation::Outcome::kPassed);
-  EXPECT_EQ(row_of(a, "correlation of the residual").outcome, estimation::Outcome::kCare);
+  EXPECT_EQ(row_in(a, estimation::Check::kTaskResidual).outcome, estimation::Outcome::kPassed);
+  EXPECT_EQ(row_in(a, estimation::Check::kResidualCorrelation).outcome, estimation::Outcome::kCare);
   for (std::size_t i = 0; i < 2; ++i) {
     const estimation::Parameter& p = a.estimate.parameters[i];
     EXPECT_LT(std::abs(p.value - a.true_value(p.name)), 4.0 * p.sigma) << p.name;
@@ -161,7 +162,7 @@ TEST(IdentifyMuscles, CorrelatedNoiseIsFoundAndWidensIntervals) {
 
 TEST(IdentifyMuscles, AWrongModelIsSaidToBeWrong) {
   const MuscleAnalysis a = recovered(2, kFour + kForces + "[person]\nmuscles = \"millard\"\n[identify]\nstarts = 1\n");
-  EXPECT_EQ(row_of(a, "residual against the noise").outcome, estimation::Outcome::kFailed);
+  EXPECT_EQ(row_in(a, estimation::Check::kTaskResidual).outcome, estimation::Outcome::kFailed);
   EXPECT_EQ(a.estimate.judgement.parameters.grade, estimation::Grade::kNo);
   for (const estimation::Parameter& p : a.estimate.parameters)
     EXPECT_NE(p.status, estimation::ParameterStatus::kIdentified);
@@ -192,7 +193,7 @@ std::string turned_arm() {
 TEST(IdentifyMuscles, APersonWithAnotherElbowDoesNotFit) {
   const MuscleAnalysis a =
       recovered(1, kFour + kForces + "[person]\nmodel = \"" + turned_arm() + "\"\n[identify]\nstarts = 1\n");
-  EXPECT_EQ(row_of(a, "residual against the noise").outcome, estimation::Outcome::kFailed);
+  EXPECT_EQ(row_in(a, estimation::Check::kTaskResidual).outcome, estimation::Outcome::kFailed);
   EXPECT_EQ(a.estimate.judgement.parameters.grade, estimation::Grade::kNo);
   // Three degrees are little: a person whose model were another altogether would be hundreds off.
   EXPECT_LT(a.result.chi_square, 10.0);
@@ -202,9 +203,8 @@ TEST(IdentifyMuscles, OneTaskIsFlaggedAndItsNullDirectionsAreTrue) {
   const TaskStudy study = person_study(3, "[tasks]\nnumbers = [8]\n[person]\n[identify]\nstarts = 1\n");
   Progress progress;
   const MuscleAnalysis a = identify(study, progress);
-  EXPECT_THAT(row_of(a, "tasks").text, HasSubstr("one task"));
-  EXPECT_EQ(row_of(a, "tasks").outcome, estimation::Outcome::kCare);
-  EXPECT_EQ(row_of(a, "hold-out").outcome, estimation::Outcome::kMissing);
+  EXPECT_EQ(row_in(a, estimation::Check::kTasks).outcome, estimation::Outcome::kCare);
+  EXPECT_EQ(row_in(a, estimation::Check::kUnseenTasks).outcome, estimation::Outcome::kMissing);
   EXPECT_EQ(a.estimate.judgement.prediction.grade, estimation::Grade::kNotJudged);
   ASSERT_GE(a.result.null_directions.size(), 3u);
   EXPECT_THAT(a.result.null_directions[0], HasSubstr(" against "));
@@ -255,12 +255,12 @@ Recoveries recoveries(int persons, const std::string& person) {
   for (int seed = 1; seed <= persons; ++seed) {
     const MuscleAnalysis a = recovered(seed, fmt::format("{}[person]\nspread = \"5 %\"\n{}", kFour, person));
     all.seconds.push_back(a.result.seconds);
-    all.failed += row_of(a, "residual against the noise").outcome == estimation::Outcome::kFailed ? 1 : 0;
-    for (std::size_t i = 0; i < a.result.verdicts.size(); ++i) {
+    all.failed += row_in(a, estimation::Check::kTaskResidual).outcome == estimation::Outcome::kFailed ? 1 : 0;
+    for (std::size_t i = 0; i < a.result.best.parameters.size(); ++i) {
       const estimation::Parameter& p = a.estimate.parameters[i];
       const double truth = a.true_value(p.name);
-      if (a.result.verdicts[i] == TaskVerdict::kAtBound) ++all.at_bound;
-      if (a.result.verdicts[i] != TaskVerdict::kIdentified) continue;
+      if (a.result.best.parameters[i].status == estimation::ParameterStatus::kAtBound) ++all.at_bound;
+      if (a.result.best.parameters[i].status != estimation::ParameterStatus::kIdentified) continue;
       ++all.identified;
       all.covered += truth >= p.low95 && truth <= p.high95 ? 1 : 0;
     }

@@ -45,10 +45,10 @@ MuscleAnalysis emg_recovered(int seed, const std::string& text) {
   return identify(emg_study(seed, text), progress);
 }
 
-const estimation::Evidence& emg_row(const MuscleAnalysis& a, const std::string& name) {
+const estimation::Evidence& emg_row(const MuscleAnalysis& a, estimation::Check check) {
   const auto found = std::find_if(a.estimate.evidence.begin(), a.estimate.evidence.end(),
-                                  [&](const estimation::Evidence& row) { return row.name == name; });
-  if (found == a.estimate.evidence.end()) throw std::runtime_error("no row " + name);
+                                  [&](const estimation::Evidence& row) { return row.check == check; });
+  if (found == a.estimate.evidence.end()) throw std::runtime_error("no row " + std::string(to_string(check)));
   return *found;
 }
 
@@ -76,13 +76,13 @@ TEST(EmgRecovery, FindsHiddenGainsAndPredictsUnseenMoments) {
   std::size_t identified = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const estimation::Parameter& p = a.estimate.parameters[i];
-    if (a.result.verdicts[i] != TaskVerdict::kIdentified) continue;
+    if (a.result.best.parameters[i].status != estimation::ParameterStatus::kIdentified) continue;
     ++identified;
     EXPECT_LT(std::abs(p.value - a.true_value(p.name)), 4.0 * p.sigma) << p.name;
   }
   EXPECT_GE(identified, 2u);
-  EXPECT_EQ(emg_row(a, "sign of the moments").outcome, estimation::Outcome::kPassed);
-  EXPECT_EQ(emg_row(a, "error of the EMG").outcome, estimation::Outcome::kPassed);
+  EXPECT_EQ(emg_row(a, estimation::Check::kMomentSign).outcome, estimation::Outcome::kPassed);
+  EXPECT_EQ(emg_row(a, estimation::Check::kEmgError).outcome, estimation::Outcome::kPassed);
   EXPECT_LT(a.result.chi_square, 1.5);
   ASSERT_EQ(a.tasks.size(), 3u);
   EXPECT_LT(a.tasks[2].after.rmse, a.tasks[2].before.rmse);
@@ -103,11 +103,12 @@ TEST(EmgRecovery, AGainAndTheStrengthOfItsMuscleAreHardlyTwoNumbers) {
           "[person]\nspread = \"4 %\"\n[identify]\nstarts = 1\n");
   const Eigen::MatrixXd& P = a.result.best.covariance_white;
   EXPECT_LT(P(0, 1) / std::sqrt(P(0, 0) * P(1, 1)), -0.6);
-  for (const TaskVerdict verdict : a.result.verdicts) EXPECT_NE(verdict, TaskVerdict::kIdentified);
+  for (const estimation::Parameter& p : a.result.best.parameters)
+    EXPECT_NE(p.status, estimation::ParameterStatus::kIdentified);
   ASSERT_FALSE(a.result.null_directions.empty());
   EXPECT_THAT(a.result.null_directions[0],
               ::testing::AnyOf(HasSubstr("gain against strength"), HasSubstr("strength against gain")));
-  EXPECT_NE(emg_row(a, kDetermined).outcome, estimation::Outcome::kPassed);
+  EXPECT_NE(emg_row(a, estimation::Check::kDeterminedByTasks).outcome, estimation::Outcome::kPassed);
 }
 
 /// Files of a person's recordings, as a laboratory would write them.
@@ -165,11 +166,11 @@ TEST(EmgRecovery, FilesOfARecordingGiveWhatTheRecordingGives) {
   // Without a stated noise of the moments it is found together with the EMG's error.
   const MuscleAnalysis unknown = from_files(folder, all.tasks.size(), false);
   EXPECT_NEAR(unknown.moment_noise(0), 0.3, 0.1);
-  EXPECT_EQ(emg_row(unknown, "residual against the noise").outcome, estimation::Outcome::kNotVerified);
+  EXPECT_EQ(emg_row(unknown, estimation::Check::kTaskResidual).outcome, estimation::Outcome::kNotVerified);
   // Moments with the other sign are named, and no parameter is for use.
   write_files(folder, study, all, -1.0);
   const MuscleAnalysis flipped = from_files(folder, all.tasks.size());
-  EXPECT_EQ(emg_row(flipped, "sign of the moments").outcome, estimation::Outcome::kFailed);
+  EXPECT_EQ(emg_row(flipped, estimation::Check::kMomentSign).outcome, estimation::Outcome::kFailed);
   EXPECT_EQ(flipped.estimate.judgement.parameters.grade, estimation::Grade::kNo);
   std::filesystem::remove_all(folder);
 }
@@ -185,10 +186,10 @@ TEST(EmgRecoverySoak, IdentifiedParametersAreCoveredAndUnseenMomentsPredicted) {
     std::string line;
     for (std::size_t i = 0; i < a.estimate.parameters.size(); ++i) {
       const estimation::Parameter& p = a.estimate.parameters[i];
-      at_bound += a.result.verdicts[i] == TaskVerdict::kAtBound ? 1 : 0;
+      at_bound += a.result.best.parameters[i].status == estimation::ParameterStatus::kAtBound ? 1 : 0;
       const double truth = a.true_value(p.name);
       line += fmt::format(" {}:{:.4g}{:+.2g}({:+.1f})", p.name, truth, p.value - truth, (p.value - truth) / p.sigma);
-      if (a.result.verdicts[i] != TaskVerdict::kIdentified) continue;
+      if (a.result.best.parameters[i].status != estimation::ParameterStatus::kIdentified) continue;
       ++identified;
       covered += p.low95 <= truth && truth <= p.high95 ? 1 : 0;
     }

@@ -108,8 +108,8 @@ estimation::Estimate tracked_estimate(const Recording& recording) {
 TEST(DriveTrackerRows, PassForACarThatDoesNotChange) {
   const estimation::Estimate estimate = tracked_estimate(drive_with_drop(3, 100.0, 1e9));
   for (const std::string_view axle : kTrackedAxleNames) {
-    for (const Check check : {Check::kResidualBeyondSensors, Check::kResidualAutocorrelation, Check::kCollinearity,
-                              Check::kExcitation, Check::kTrackedParts, Check::kChanges, Check::kNextRow}) {
+    for (const Check check : {Check::kResidualBeyondSensors, Check::kInnovationCorrelation, Check::kCollinearity,
+                              Check::kTrackedExcitation, Check::kTrackedParts, Check::kChanges, Check::kNextRow}) {
       const estimation::Evidence* row = tracked_row(estimate, check, axle);
       ASSERT_NE(row, nullptr) << to_string(check) << " of " << axle;
       EXPECT_TRUE(row->passed() || row->bears_on.empty()) << to_string(check) << " of " << axle << ": " << says(*row);
@@ -132,7 +132,7 @@ TEST(DriveTrackerRows, SayThatGripDroppedAndWhatIsNotExcited) {
   EXPECT_TRUE(found);
   EXPECT_EQ(wet.judgement.parameters.grade, estimation::Grade::kWithCare);
   const estimation::Estimate straight = tracked_estimate(drive_with_drop(1, 40.0, 1e9, 1e-4));
-  EXPECT_EQ(tracked_row(straight, Check::kExcitation, "C_f")->outcome, estimation::Outcome::kCare);
+  EXPECT_EQ(tracked_row(straight, Check::kTrackedExcitation, "C_f")->outcome, estimation::Outcome::kCare);
 }
 
 // A steering sensor of the wrong sign, which a whole recording is refused for: to turn that way, the front tyres would

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/estimation/judgement/limits.hpp"
 
 namespace veridyn::estimation {
 namespace {
@@ -50,7 +51,9 @@ std::string_view to_string(Cause cause) {
 
 Evidence row_of(Check check, std::string about, double value, double sigma) {
   const CheckInfo& info = info_of(check);
-  Evidence row = row_of(check, std::move(about), outcome_of(value, sigma, info.tolerance));
+  // No number is no reason to pass.
+  Evidence row =
+      row_of(check, std::move(about), std::isnan(value) ? Outcome::kMissing : outcome_of(value, sigma, info.tolerance));
   row.value = value;
   row.sigma = sigma;
   row.limit = limit_for(value, row.outcome, info.tolerance);

@@ -111,7 +111,7 @@ struct CheckInfo {
 [[nodiscard]] std::string advice_of(const Evidence& row);
 
 /// A row whose outcome follows from the limits of its check, beyond kBeyondChance standard errors. Its limit is the one
-/// that decided, else the nearest.
+/// that decided, else the nearest. Missing where the value is NaN.
 [[nodiscard]] Evidence row_of(Check check, std::string about, double value, double sigma = 0.0);
 /// A row whose outcome the caller reached: by logic, by a test's p, or by a limit of the study.
 [[nodiscard]] Evidence row_of(Check check, std::string about, Outcome outcome);

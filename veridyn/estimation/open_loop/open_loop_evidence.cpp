@@ -1,9 +1,9 @@
 #include "veridyn/estimation/open_loop/open_loop_evidence.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <utility>
 
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/estimation/open_loop/open_loop_scores.hpp"
 
 namespace veridyn::estimation {
@@ -17,11 +17,12 @@ struct Held {
 };
 
 Held held(const OpenLoopState& state, const OpenLoopHorizon& horizon) {
+  const Tolerance& tolerance = info_of(Check::kOpenLoopHorizon).tolerance;
   const double periods = state.horizon_s / horizon.period_s;
   const bool to_the_end = 2 * state.held > state.windows;
   const bool large = state.normalised_rmse > horizon.large_error;
-  const Outcome left = periods < kFailedPeriods && large ? Outcome::kFailed : Outcome::kCare;
-  return {&state, periods, periods >= kCarePeriods ? Outcome::kPassed : to_the_end ? Outcome::kNotVerified : left};
+  const Outcome left = periods < tolerance.lowest && large ? Outcome::kFailed : Outcome::kCare;
+  return {&state, periods, periods >= tolerance.low ? Outcome::kPassed : to_the_end ? Outcome::kNotVerified : left};
 }
 
 }  // namespace
@@ -35,56 +36,33 @@ std::optional<Evidence> open_loop_horizon(const OpenLoop& open_loop, const OpenL
     return a.outcome != b.outcome ? a.outcome > b.outcome : a.periods < b.periods;
   });
   const OpenLoopState& state = *worst.state;
-  const bool left = worst.outcome == Outcome::kCare || worst.outcome == Outcome::kFailed;
-  const std::string what =
-      left ? fmt::format(
-                 "leaves the 95 % band of {} after {:.1f} s, and misses it by {:.2f} times what the motion varies",
-                 state.name, state.horizon_s, state.normalised_rmse)
-      : worst.outcome == Outcome::kNotVerified
-          ? fmt::format("stays within its bands to the end of its windows, which are short ({:.1f} s)", state.horizon_s)
-          : fmt::format("stays within its bands for {:.1f} s", state.horizon_s);
-  return Evidence{
-      .name = "open loop horizon",
-      .about = horizon.group,
-      .outcome = worst.outcome,
-      .value = worst.periods,
-      .limit = kCarePeriods,
-      .scale = horizon.scale,
-      .text = fmt::format("{}{}integrated from {} alone, the model {}: {:.1f} periods of the {}", horizon.group,
-                          horizon.group.empty() ? "" : ": ", open_loop.inputs, what, worst.periods, horizon.motion),
-      .bears_on = Purpose::kPrediction,
-      .advice = !left                                 ? ""
-                : state.normalised_rmse < kLargeError ? horizon.advice_small
-                                                      : horizon.advice_large};
+  const Tolerance& tolerance = info_of(Check::kOpenLoopHorizon).tolerance;
+  Evidence row = row_of(Check::kOpenLoopHorizon, horizon.group, worst.outcome);
+  row.value = worst.periods;
+  row.limit = worst.outcome == Outcome::kFailed ? tolerance.lowest : tolerance.low;
+  if (worst.outcome == Outcome::kCare || worst.outcome == Outcome::kFailed)
+    row.cause = !horizon.air_known                    ? Cause::kMissing
+                : state.normalised_rmse < kLargeError ? Cause::kNoise
+                                                      : Cause::kMissingTerm;
+  return std::move(row)
+      .with("inputs", open_loop.inputs)
+      .with("state", state.name)
+      .with("horizon_s", state.horizon_s)
+      .with("error", state.normalised_rmse)
+      .with("motion", horizon.motion);
 }
 
 std::vector<Evidence> open_loop_errors(const OpenLoop& open_loop, const std::string& range) {
   std::vector<Evidence> rows;
-  for (const OpenLoopState& state : open_loop.states) {
-    const bool better = state.normalised_rmse <= 1.0;
-    rows.push_back(
-        {.name = "open loop against the mean",
-         .about = state.name,
-         .outcome = passed_or(better, Outcome::kCare),
-         .value = state.normalised_rmse,
-         .limit = 1.0,
-         .scale = "error over the motion's standard deviation",
-         .text = fmt::format("integrated open loop for up to {:.0f} s, the model misses {} by {:.2g} {} (RMSE), "
-                             "{:.2f} times what the motion varies{}",
-                             open_loop.times.duration_s, state.name, state.fit.rmse, state.unit, state.normalised_rmse,
-                             better ? "" : ": its mean is nearer"),
-         .bears_on = Purpose::kPrediction});
-  }
-  const std::size_t diverged = diverged_windows(open_loop);
+  for (const OpenLoopState& state : open_loop.states)
+    rows.push_back(row_of(Check::kOpenLoopAgainstMean, state.name, state.normalised_rmse)
+                       .with("duration_s", open_loop.times.duration_s)
+                       .with("rmse", state.fit.rmse)
+                       .with("unit", state.unit));
   if (!open_loop.windows.empty())
-    rows.push_back({.name = "open loop divergence",
-                    .outcome = passed_or(diverged == 0, Outcome::kFailed),
-                    .value = static_cast<double>(diverged),
-                    .limit = 0.0,
-                    .scale = "windows",
-                    .text = fmt::format("{} of {} windows left the range of the model ({}) open loop", diverged,
-                                        open_loop.windows.size(), range),
-                    .bears_on = Purpose::kPrediction});
+    rows.push_back(row_of(Check::kOpenLoopDivergence, "", static_cast<double>(diverged_windows(open_loop)))
+                       .with("windows", static_cast<double>(open_loop.windows.size()))
+                       .with("range", range));
   return rows;
 }
 

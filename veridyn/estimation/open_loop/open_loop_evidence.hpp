@@ -9,10 +9,6 @@
 
 namespace veridyn::estimation {
 
-/// Periods of its natural motion that a forecast has to hold: with care below them.
-inline constexpr double kCarePeriods = 10.0;
-/// Failed below them, where the error is large.
-inline constexpr double kFailedPeriods = 3.0;
 /// Errors that are large, over the motion's standard deviation.
 inline constexpr double kLargeError = 0.25;
 
@@ -21,16 +17,14 @@ struct OpenLoopHorizon {
   std::string group = {};
   double period_s = 0.0;  ///< of the model's natural motion where it was integrated
   std::string motion;     ///< "short-period motion"
-  std::string scale;      ///< "short periods"
   double large_error = kLargeError;
-  std::string advice_large = {};  ///< where the error is large
-  std::string advice_small = {};  ///< where a model leaves bands that its error is hardly larger than
+  bool air_known = true;  ///< whether gusts were an input, or there were none
 };
 
 /// *open loop horizon*: how long the states of a group stay within their bands, by the worst of them, in periods of the
-/// natural motion. Below kCarePeriods with care; below kFailedPeriods failed where the error is also larger than
-/// `large_error` of the motion's standard deviation. Not verified where the windows are shorter than kCarePeriods and
-/// most are held to their end. Nothing where no state of the group was integrated.
+/// natural motion. Below ten with care; below three failed where the error is also larger than `large_error` of the
+/// motion's standard deviation. Not verified where the windows are shorter than ten and most are held to their end.
+/// Nothing where no state of the group was integrated.
 [[nodiscard]] std::optional<Evidence> open_loop_horizon(const OpenLoop& open_loop, const OpenLoopHorizon& horizon);
 
 /// *open loop against the mean*, of each state: with care where the error is larger than the motion's standard

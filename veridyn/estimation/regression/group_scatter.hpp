@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "veridyn/estimation/judgement/limits.hpp"
 #include "veridyn/estimation/regression/regression.hpp"
 
 namespace veridyn::estimation {
@@ -41,7 +42,7 @@ struct GroupScatter {
   /// Of Student's t.
   [[nodiscard]] double degrees_of_freedom() const { return static_cast<double>(compared) - 1.0; }
   /// p below which groups are taken to differ.
-  static constexpr double kLevel = 0.05;
+  static constexpr double kLevel = kPartsDiffer;
 };
 
 /// Of each group's estimate by itself, of the same parameters in the same order; one that is not usable does not

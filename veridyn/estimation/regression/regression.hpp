@@ -108,7 +108,8 @@ struct RegressionEstimate {
 /// All methods on the same data, from one pass over it, and which one is recommended.
 struct RegressionComparison {
   std::vector<RegressionEstimate> estimates;  ///< OLS, TLS, GTLS, PCA-GTLS (without W: OLS, TLS)
-  std::vector<Evidence> checks;
+  std::vector<Evidence> checks;    ///< but for `collinearity`, which depends on what the caller knows of noise
+  Method examined = Method::kOls;  ///< whose regressors and residual the checks are of
   bool recommends = false;
   Method recommended = Method::kOls;  ///< meaningful when `recommends`
   std::string reason;                 ///< one sentence, whether it recommends or refuses
@@ -118,6 +119,8 @@ struct RegressionComparison {
   Eigen::VectorXd theta_with_equation_error;
 
   [[nodiscard]] const RegressionEstimate* find(Method method) const;
+  /// That whose regressors were examined; null before any comparison.
+  [[nodiscard]] const RegressionEstimate* examined_estimate() const { return find(examined); }
   /// The recommended estimate, or null when none is.
   [[nodiscard]] const RegressionEstimate* best() const { return recommends ? find(recommended) : nullptr; }
 };

@@ -6,6 +6,8 @@
 #include <optional>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
+#include "veridyn/estimation/judgement/limits.hpp"
 #include "veridyn/estimation/regression/equation_error.hpp"
 #include "veridyn/estimation/regression/regression.hpp"
 #include "veridyn/estimation/regression/regression_analysis.hpp"
@@ -14,11 +16,6 @@
 
 namespace veridyn::estimation {
 namespace {
-
-constexpr double kScaleBand = 2.0;         // error variances are hardly ever known better than to a factor of two
-constexpr double kSensitivityLimit = 2.0;  // sigmas
-constexpr double kConditionLimit = 300.0;
-constexpr double kInflationLimit = 10.0;  // usual limit, e.g. Klein & Morelli (2006) sec. 5.5
 
 struct Distance {
   double sigmas = 0.0;
@@ -38,62 +35,51 @@ Distance distance(const RegressionEstimate& scale, const Eigen::VectorXd& a, con
 }
 
 Evidence residual_autocorrelation(const RegressionEstimate& estimate) {
-  Evidence check{.name = "residual autocorrelation", .scale = "Durbin-Watson"};
-  check.value = estimate.whiteness.durbin_watson;
-  check.limit = 2.0;
-  check.outcome = passed_or(estimate.whiteness.white(), Outcome::kCare);
-  double worst = 0.0;
+  double worst = 1.0;
   for (const Parameter& p : estimate.parameters) {
     if (p.sigma_white > 0.0 && std::isfinite(p.sigma)) worst = std::max(worst, p.sigma / p.sigma_white);
   }
-  check.text = check.passed()
-                   ? "the residual is white"
-                   : fmt::format(
-                         "the residual is autocorrelated (Durbin-Watson {:.2f}), which the error bars allow for: those "
-                         "of white noise would be up to {:.1f} times too small",
-                         check.value, std::max(1.0, worst));
-  return check;
+  return row_of(Check::kResidualAutocorrelation, "", estimate.whiteness.p_value)
+      .with("durbin_watson", estimate.whiteness.durbin_watson)
+      .with("factor", worst);
 }
 
-// Is the residual as large as W says? Chi-square with the effective number of samples.
-Evidence error_scale(const RegressionEstimate& gtls, const Eigen::VectorXd& residual, const std::vector<int>& segment) {
-  Evidence check{.name = "error scale", .scale = "residual variance over assumed"};
+/// Is the residual as large as W says? Chi-square with the effective number of samples.
+/// @param excess_in_W  what is above 1 is rounding: W has been raised by it already
+Evidence error_scale(const RegressionEstimate& gtls, const Eigen::VectorXd& residual, const std::vector<int>& segment,
+                     bool excess_in_W) {
+  const Tolerance& known = info_of(Check::kErrorScale).tolerance;
   const double samples =
       numerics::effective_sample_size_variance({residual.data(), static_cast<std::size_t>(residual.size())}, segment);
-  const double low = std::min(1.0 / kScaleBand, numerics::chi_square_quantile(0.005, samples) / samples);
-  const double high = std::max(kScaleBand, numerics::chi_square_quantile(0.995, samples) / samples);
-  check.value = gtls.error_scale;
-  check.limit = gtls.error_scale > 1.0 ? high : low;
-  check.outcome = passed_or(gtls.error_scale >= low && gtls.error_scale <= high, Outcome::kCare);
-  const double p = numerics::chi_square_upper_p(samples * gtls.error_scale, samples);
-  check.text = fmt::format(
-      "residual variance is {:.3g} of what the assumed errors give (trusted within {:.2g} to {:.3g}; {:.0f} effective "
-      "samples, p = {:.2g})",
-      check.value, low, high, samples, 2.0 * std::min(p, 1.0 - p));
-  return check;
+  const double low = std::min(known.low, numerics::chi_square_quantile(0.005, samples) / samples);
+  const double high =
+      excess_in_W ? kInfinity : std::max(known.high, numerics::chi_square_quantile(0.995, samples) / samples);
+  const double scale = gtls.error_scale;
+  Evidence row = row_of(Check::kErrorScale, "", passed_or(scale >= low && scale <= high, Outcome::kCare));
+  row.value = scale;
+  row.limit = scale > 1.0 ? high : low;
+  if (!row.passed()) row.cause = Cause::kNoise;
+  const double p = numerics::chi_square_upper_p(samples * scale, samples);
+  return std::move(row)
+      .with("low", low)
+      .with("high", high)
+      .with("samples", samples)
+      .with("p", 2.0 * std::min(p, 1.0 - p));
 }
 
 Evidence ols_agreement(const RegressionEstimate& ols, const RegressionEstimate& candidate) {
-  const std::string_view name = to_string(candidate.method);
   const Distance gap = distance(candidate, candidate.theta, ols.theta);
-  Evidence check{.name = "agreement of OLS",
-                 .outcome = passed_or(gap.sigmas <= kSensitivityLimit, Outcome::kCare),
-                 .value = gap.sigmas,
-                 .limit = kSensitivityLimit,
-                 .scale = "sigma"};
-  check.text = check.passed() ? fmt::format("OLS and {} agree to {:.1f} sigma", name, gap.sigmas)
-                              : fmt::format("OLS is {:.1f} sigma of {} away in {}: errors of the regressors matter",
-                                            gap.sigmas, name, gap.parameter);
-  return check;
+  return row_of(Check::kOlsAgreement, "", gap.sigmas)
+      .with("method", std::string(to_string(candidate.method)))
+      .with("parameter", gap.parameter);
 }
 
-/// What a residual of another size than the assumed errors says changes when it is read the other way: all of it as
-/// equation error, or as smaller errors of the regressors.
+/// What a residual of another size than the assumed errors says changes when it is laid elsewhere: all of it to the
+/// equation, or to smaller errors of the regressors.
 struct OtherReading {
   bool too_large = false;                ///< is the residual larger than the errors say?
   std::optional<Eigen::VectorXd> theta;  ///< under the other reading; none: it has no solution
   Distance moved;                        ///< of the candidate to it
-  Evidence check;                        ///< whether that matters
 };
 
 /// `raised` is W with equation error.
@@ -106,20 +92,15 @@ OtherReading read_otherwise(const internal::RegressionAnalysis& analysis, const 
       candidate.method,
       out.too_large ? raised : with_smaller_regressor_errors(analysis.triangle(), W, analysis.rows()));
   out.moved = out.theta ? distance(candidate, candidate.theta, *out.theta) : Distance{kInfinity, ""};
-  const Distance& moved = out.moved;
-  out.check = {.name = "sensitivity to the error ratio",
-               .outcome = passed_or(moved.sigmas <= kSensitivityLimit, Outcome::kCare),
-               .value = moved.sigmas,
-               .limit = kSensitivityLimit,
-               .scale = "sigma"};
-  out.check.text =
-      !out.theta
-          ? std::string("with the other reading of the mismatch there is no estimate")
-          : fmt::format("{} moves {:.1f} sigma at most{} if {}", to_string(candidate.method), moved.sigmas,
-                        moved.parameter.empty() ? "" : fmt::format(" ({})", moved.parameter),
-                        out.too_large ? "what the assumed errors leave unexplained is error of the equation alone"
-                                      : "the regressors' errors are smaller than assumed");
   return out;
+}
+
+Evidence sensitivity_row(const OtherReading& other, const RegressionEstimate& candidate) {
+  Evidence row = row_of(Check::kErrorRatioSensitivity, "", other.moved.sigmas);
+  if (!row.passed()) row.cause = !other.theta ? Cause::kMissing : other.too_large ? Cause::kMissingTerm : Cause::kNoise;
+  return std::move(row)
+      .with("method", std::string(to_string(candidate.method)))
+      .with("parameter", other.moved.parameter);
 }
 
 RegressionComparison recommend(RegressionComparison comparison, Method method, std::string reason) {
@@ -139,7 +120,7 @@ RegressionComparison compare_with_exact_regressors(RegressionComparison result, 
   const RegressionEstimate& ols = result.estimates[0];
   const RegressionEstimate* pca = result.find(Method::kPcaGtls);
   const bool held = !ols.usable() && pca != nullptr && pca->usable();
-  result.checks.push_back(collinearity(held ? *pca : ols));
+  if (held) result.examined = Method::kPcaGtls;
   result.checks.push_back(residual_autocorrelation(ols));
   if (ols.usable()) {
     return recommend(std::move(result), Method::kOls,
@@ -156,34 +137,31 @@ RegressionComparison compare_with_exact_regressors(RegressionComparison result, 
 
 }  // namespace
 
-Evidence collinearity(const RegressionEstimate& estimate) {
-  Evidence check{.name = "collinearity",
-                 .value = estimate.condition_number,
-                 .limit = kConditionLimit,
-                 .scale = "condition number",
-                 .bears_on = Purpose::kParameters};
-  double largest = 1.0;
-  std::vector<std::string> names;
+Evidence collinearity(const RegressionEstimate& estimate, bool noise_alone) {
+  double inflation = 1.0;
+  std::vector<std::string> together, all;
   for (const Parameter& p : estimate.parameters) {
     if (p.status == ParameterStatus::kNotExcited || p.status == ParameterStatus::kFixed) continue;
-    largest = std::max(largest, p.variance_inflation);
-    if (p.variance_inflation > kInflationLimit) names.push_back(p.name);
+    inflation = std::max(inflation, p.variance_inflation);
+    all.push_back(p.name);
+    if (p.variance_inflation > kVarianceInflation) together.push_back(p.name);
   }
-  check.text = fmt::format("condition number {:.3g}, largest variance inflation {:.3g}", check.value, largest);
-  if (!estimate.unexcited.empty()) {
-    // The condition number is that of all directions; those that are not excited are held and reported as such.
-    check.value = largest;
-    check.limit = kInflationLimit;
-    check.scale = "variance inflation";
-    check.text = fmt::format("largest variance inflation {:.3g}, with what is not excited held", largest);
-  }
-  check.outcome = passed_or(check.value <= check.limit && names.empty(), Outcome::kCare);
-  if (!names.empty()) {
-    check.text = fmt::format("the regressors of {} move together (variance inflation up to {:.3g})",
-                             fmt::join(names, ", "), largest);
-    check.advice = "excite them separately: move one control at a time, in its own manoeuvre";
-  }
-  return check;
+  // The condition number is that of all directions; those that are not excited are held and reported as such.
+  const bool held = !estimate.unexcited.empty();
+  const Outcome outcome =
+      held ? Outcome::kPassed : outcome_of(estimate.condition_number, 0.0, info_of(Check::kCollinearity).tolerance);
+  const bool by_inflation = held || (!together.empty() && outcome != Outcome::kFailed);
+  Evidence row = by_inflation ? row_of(Check::kVarianceInflation, "", inflation)
+                              : row_of(Check::kCollinearity, "", estimate.condition_number);
+  if (!row.passed()) row.cause = Cause::kCollinear;
+  if (noise_alone && row.outcome == Outcome::kCare) row.outcome = Outcome::kPassed;
+  return std::move(row)
+      .with("inflation", inflation)
+      .with("names", fmt::format("{}", fmt::join(together.empty() ? all : together, ", ")));
+}
+
+bool is_collinearity(const Evidence& row) {
+  return row.check == Check::kCollinearity || row.check == Check::kVarianceInflation;
 }
 
 RegressionComparison compare(const RegressionData& data, const RegressionOptions& options) {
@@ -201,7 +179,7 @@ RegressionComparison compare(const RegressionData& data, const RegressionOptions
   const RegressionEstimate& pca = *result.find(Method::kPcaGtls);
   const RegressionEstimate candidate = pca.usable() && !pca.unexcited.empty() ? pca : *result.find(Method::kGtls);
   const std::string name(to_string(candidate.method));
-  result.checks.push_back(collinearity(candidate.usable() ? candidate : ols));
+  result.examined = candidate.usable() ? candidate.method : Method::kOls;
   result.checks.push_back(residual_autocorrelation(candidate));
   if (!candidate.usable())
     return refuse(std::move(result), fmt::format("none: {} found nothing: {}", name, candidate.message));
@@ -213,21 +191,21 @@ RegressionComparison compare(const RegressionData& data, const RegressionOptions
                                  name));
   }
 
-  Evidence scale = error_scale(candidate, analysis.residual(candidate.theta), data.segment);
-  if (!data.regressand_error_known && candidate.error_scale > 1.0)
-    scale.outcome = Outcome::kPassed;  // only rounding above 1: the excess is in W already
+  const Evidence scale = error_scale(candidate, analysis.residual(candidate.theta), data.segment,
+                                     !data.regressand_error_known && candidate.error_scale > 1.0);
   result.checks.push_back(scale);
   const Eigen::MatrixXd raised = with_equation_error(analysis.triangle(), data.error_covariance, analysis.rows());
   if (const auto theta = analysis.theta_under(Method::kGtls, raised)) result.theta_with_equation_error = *theta;
   const OtherReading other = read_otherwise(analysis, candidate, raised);
-  result.checks.push_back(other.check);
+  const Evidence sensitivity = sensitivity_row(other, candidate);
+  result.checks.push_back(sensitivity);
 
   if (scale.passed()) {
     return recommend(std::move(result), candidate.method,
                      fmt::format("{}: the residual is as large as the assumed errors say (ratio {:.2g})", name,
                                  candidate.error_scale));
   }
-  if (other.check.passed()) {
+  if (sensitivity.passed()) {
     return recommend(std::move(result), candidate.method,
                      fmt::format("{}: the residual variance is {:.2g} of what the assumed errors give, but the "
                                  "estimate moves only {:.1f} sigma by it",

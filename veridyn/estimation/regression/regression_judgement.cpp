@@ -7,13 +7,13 @@
 
 #include "veridyn/core/index.hpp"
 #include "veridyn/estimation/judgement/agreement.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
+#include "veridyn/estimation/judgement/limits.hpp"
 #include "veridyn/estimation/regression/regression_evidence.hpp"
 
 namespace veridyn::estimation {
 namespace {
 
-/// Rows of a parameter below which errors of the errors matter.
-constexpr Eigen::Index kRowsAParameter = 10;
 constexpr Eigen::Index kFolds = 5;
 
 /// The number of each row's part: its segment where there are at least `parts`, else of `parts` equal stretches.
@@ -48,18 +48,24 @@ RegressionData rows_where(const RegressionData& data, const std::vector<Eigen::I
   return some;
 }
 
-Evidence rows_row(const RegressionData& data, Eigen::Index dropped) {
-  const double share = static_cast<double>(dropped) / static_cast<double>(data.rows() + dropped);
-  const bool enough = data.rows() >= kRowsAParameter * data.parameters();
-  return {.name = "rows",
-          .outcome = passed_or(enough && share <= 0.1, Outcome::kCare),
-          .value = static_cast<double>(data.rows()) / static_cast<double>(data.parameters()),
-          .limit = static_cast<double>(kRowsAParameter),
-          .scale = "rows a parameter",
-          .text = fmt::format("{} rows for {} parameters; {} incomplete rows were left out", data.rows(),
-                              data.parameters(), dropped),
-          .bears_on = Purpose::kData | Purpose::kParameters,
-          .advice = enough ? std::string() : std::string("take more rows, or fewer terms")};
+Evidence rows_row(const RegressionData& data) {
+  const auto rows = static_cast<double>(data.rows()), parameters = static_cast<double>(data.parameters());
+  Evidence row = row_of(Check::kRows, "", rows / parameters);
+  if (!row.passed()) row.cause = Cause::kLength;
+  return std::move(row).with("rows", rows).with("parameters", parameters);
+}
+
+Evidence incomplete_rows(const RegressionData& data, Eigen::Index dropped) {
+  const auto missing = static_cast<double>(dropped);
+  Evidence row = row_of(Check::kIncompleteRows, "", missing / (static_cast<double>(data.rows()) + missing));
+  if (!row.passed()) row.cause = Cause::kMissing;
+  return std::move(row).with("dropped", missing);
+}
+
+/// Whether estimates of these rows have errors that are known.
+bool enough_rows(const RegressionData& rows) {
+  return static_cast<double>(rows.rows()) >=
+         info_of(Check::kRows).tolerance.low * static_cast<double>(rows.parameters());
 }
 
 /// Both halves, each by the method of the whole.
@@ -69,32 +75,23 @@ std::optional<Agreement> agreement_of_halves(const RegressionData& data, Method 
   std::array<RegressionEstimate, 2> half;
   for (Eigen::Index k = 0; k < 2; ++k) {
     const RegressionData rows = rows_where(data, part, k, true);
-    if (rows.rows() < kRowsAParameter * rows.parameters()) return std::nullopt;
+    if (!enough_rows(rows)) return std::nullopt;
     half[k] = estimate(rows, method, options);
     if (!half[k].usable()) return std::nullopt;
   }
   return agreement(half[0].theta - half[1].theta, half[0].covariance + half[1].covariance);
 }
 
+/// The factor on all variances by which halves scatter more than their error bars; 1 where that may be chance.
+double widening_of(const std::optional<Agreement>& halves) {
+  return halves && halves->p < kPartsDiffer ? std::max(1.0, halves->ratio) : 1.0;
+}
+
 Evidence agreement_row(const std::optional<Agreement>& halves) {
-  Evidence row{.name = "agreement of the parts",
-               .outcome = Outcome::kMissing,
-               .value = kNaN,
-               .limit = 1e-3,
-               .scale = "p",
-               .text = "the rows are too few to be estimated in two parts",
-               .bears_on = {}};
-  if (!halves) return row;
-  row.bears_on = Purpose::kParameters;
-  row.value = halves->p;
-  row.outcome = passed_or(halves->p >= row.limit, Outcome::kFailed);
-  row.text = fmt::format("the two halves of the rows, estimated separately, {} (p = {:.2g})",
-                         halves->p >= 0.05        ? "agree within their error bars"
-                         : halves->p >= row.limit ? "differ by more than their error bars, which were widened by that"
-                                                  : "contradict each other",
-                         halves->p);
-  if (!row.passed()) row.advice = "look for what differs between the parts: a term that is missing, or another subject";
-  return row;
+  if (!halves) return row_of(Check::kHalvesAgree, "", Outcome::kNotVerified);
+  Evidence row = row_of(Check::kHalvesAgree, "", halves->p);
+  if (!row.passed()) row.cause = Cause::kMissingTerm;
+  return std::move(row).with("widening", std::sqrt(widening_of(halves)));
 }
 
 /// What is left of the variance when every part is predicted by the others.
@@ -116,24 +113,7 @@ std::optional<double> cross_validated_r2(const RegressionData& data, Method meth
 }
 
 Evidence cross_validation_row(const std::optional<double>& r2) {
-  if (!r2)
-    return {.name = "cross-validation",
-            .outcome = Outcome::kMissing,
-            .value = kNaN,
-            .limit = 0.0,
-            .scale = "R2",
-            .text = "the rows are too few to predict some from the others",
-            .bears_on = Purpose::kPrediction};
-  const bool better = *r2 > 0.0;
-  return {
-      .name = "cross-validation",
-      .outcome = passed_or(better, Outcome::kFailed),
-      .value = *r2,
-      .limit = 0.0,
-      .scale = "R2",
-      .text = fmt::format("parts of the rows, predicted by an estimate from the others, are explained by {:.1f} %{}",
-                          100.0 * std::max(0.0, *r2), better ? "" : ": no better than by the mean"),
-      .bears_on = Purpose::kPrediction};
+  return r2 ? row_of(Check::kCrossValidation, "", *r2) : row_of(Check::kCrossValidation, "", Outcome::kMissing);
 }
 
 /// What is recommended, or asked for, or (to be shown with the reason against it) what there is.
@@ -149,17 +129,11 @@ const RegressionEstimate* choose(const RegressionComparison& comparison, std::op
 }
 
 Evidence method_row(const RegressionComparison& comparison, std::optional<Method> method, bool found) {
-  const bool given = method.has_value();
-  return {.name = "method",
-          .outcome = !found                           ? Outcome::kFailed
-                     : given || comparison.recommends ? Outcome::kPassed
-                                                      : Outcome::kFailed,
-          .value = kNaN,
-          .limit = kNaN,
-          .text = given ? fmt::format("{} was asked for{}; recommended would be {}", to_string(*method),
-                                      found ? "" : " and gives no estimate", comparison.reason)
-                        : comparison.reason,
-          .bears_on = Purpose::kParameters};
+  const std::string recommended(comparison.recommends ? to_string(comparison.recommended) : "none");
+  const std::string taken(method ? to_string(*method) : recommended);
+  Evidence row = row_of(Check::kMethod, "", passed_or(found && (method || comparison.recommends), Outcome::kFailed));
+  if (!row.passed()) row.cause = found ? Cause::kNoise : Cause::kMissing;
+  return std::move(row).with("method", taken).with("recommended", recommended);
 }
 
 MethodResult by_bootstrap(const JudgedRegression& result, const JudgedRegressionOptions& options, Progress& progress) {
@@ -208,21 +182,19 @@ JudgedRegression judged_regression(RegressionData data, const JudgedRegressionOp
     group.methods.push_back({std::string(to_string(e.method)), e.usable(), e.message, e.parameters});
   if (const RegressionEstimate* chosen = choose(result.comparison, options.method)) result.chosen = *chosen;
 
-  group.evidence = {rows_row(result.data, result.dropped)};
-  for (const Evidence& check : result.comparison.checks) group.evidence.push_back(check);
-  if (result.chosen && std::ranges::find(group.evidence, "collinearity", &Evidence::name) == group.evidence.end())
-    group.evidence.push_back(collinearity(*result.chosen));
+  group.evidence = {rows_row(result.data), incomplete_rows(result.data, result.dropped)};
+  const RegressionEstimate* examined = result.chosen ? &*result.chosen : result.comparison.examined_estimate();
+  if (examined != nullptr) group.evidence.push_back(collinearity(*examined));
+  group.evidence.insert(group.evidence.end(), result.comparison.checks.begin(), result.comparison.checks.end());
   group.evidence.push_back(method_row(result.comparison, options.method, result.chosen.has_value()));
   if (result.chosen) {
     const auto halves = agreement_of_halves(result.data, result.chosen->method, options.regression);
-    constexpr double kBeyondChanceAt = 0.05;
-    if (halves && halves->p < kBeyondChanceAt) widen(*result.chosen, halves->ratio, options.regression.significance);
+    widen(*result.chosen, widening_of(halves), options.regression.significance);
     group.evidence.push_back(agreement_row(halves));
     const auto r2 = cross_validated_r2(result.data, result.chosen->method, options.regression);
     group.evidence.push_back(cross_validation_row(r2));
   }
-  for (Evidence& row : group.evidence)
-    if (row.about.empty()) row.about = group.name;
+  for (Evidence& row : group.evidence) row.about = group.name;
   group.judgement = judge(group.evidence);
   group.verdict = result.chosen ? verdict_of(group.judgement) : GroupVerdict::kRejected;
   result.estimate.subject = result.data.regressand_name;

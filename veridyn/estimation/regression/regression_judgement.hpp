@@ -29,7 +29,7 @@ struct JudgedRegression : Analysis {
 };
 
 /// All methods on the rows, the recommended one (or the one that is asked for), and the rows of evidence that decide:
-/// - *rows*: how many were incomplete, and whether there are ten a parameter;
+/// - *rows*: whether there are ten a parameter, and *incomplete rows*: how many were left out;
 /// - *collinearity*, *residual autocorrelation*, size and place of the errors: those of `compare`;
 /// - *agreement of the parts*: both halves of the rows (or of the segments), estimated separately, must agree within
 ///   their error bars; where they differ beyond chance at 5 % the intervals are widened by what they differ by;

@@ -8,14 +8,12 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::estimation {
 namespace {
-
-constexpr double kDiffers = 0.05;
-constexpr double kContradicts = 1e-3;
 
 bool comparable(const Parameter& p) {
   const bool stated = p.status != ParameterStatus::kRejected && p.status != ParameterStatus::kNotExcited &&
@@ -126,40 +124,13 @@ ComparedPair compared(std::span<const NamedEstimate> estimates, std::size_t firs
   return pair;
 }
 
-Outcome outcome_for(double p) {
-  return p >= kDiffers ? Outcome::kPassed : p >= kContradicts ? Outcome::kCare : Outcome::kFailed;
-}
-
-Evidence row_of(const ComparedPair& pair, std::span<const NamedEstimate> estimates) {
-  const std::string names = fmt::format("{} and {}", estimates[pair.first].name, estimates[pair.second].name);
-  const std::string most =
-      pair.largest.empty() ? std::string()
-                           : fmt::format("; most in {}, by {:.1f} standard errors", pair.largest, pair.largest_sigmas);
-  return {.name = "agreement of two estimates",
-          .about = names,
-          .outcome = outcome_for(pair.p),
-          .value = pair.p,
-          .limit = kDiffers,
-          .scale = "p",
-          .text = fmt::format("{} {} in {} parameters (chi-square {:.1f}, p = {:.2g}{})", names,
-                              pair.p >= kDiffers       ? "agree"
-                              : pair.p >= kContradicts ? "differ"
-                                                       : "contradict each other",
-                              pair.parameters, pair.chi_square, pair.p, most),
-          .bears_on = Purpose::kParameters};
-}
-
-Evidence row_of(const ComparedParameter& parameter) {
-  return {.name = "one value",
-          .about = parameter.name,
-          .outcome = outcome_for(parameter.p),
-          .value = parameter.p,
-          .limit = kDiffers,
-          .scale = "p",
-          .text = fmt::format("the estimates of {} scatter by {:.2g} beyond their standard errors (p = {:.2g})",
-                              parameter.name, parameter.between_sigma, parameter.p),
-          .bears_on = Purpose::kParameters,
-          .advice = "use the mean with the scatter between them, or find what differs"};
+Evidence pair_row(const ComparedPair& pair, std::span<const NamedEstimate> estimates) {
+  return row_of(Check::kEstimatesAgree,
+                fmt::format("{} and {}", estimates[pair.first].name, estimates[pair.second].name), pair.p)
+      .with("parameters", static_cast<double>(pair.parameters))
+      .with("chi_square", pair.chi_square)
+      .with("largest", pair.largest)
+      .with("largest_sigmas", pair.largest_sigmas);
 }
 
 }  // namespace
@@ -188,13 +159,14 @@ EstimateComparison compare_estimates(std::span<const NamedEstimate> estimates) {
       if (const ComparedPair pair = compared(estimates, i, j); pair.parameters > 0) result.pairs.push_back(pair);
   std::size_t agreeing = 0;
   for (const ComparedPair& pair : result.pairs) {
-    result.evidence.push_back(row_of(pair, estimates));
-    agreeing += pair.p >= kDiffers ? 1U : 0U;
+    result.evidence.push_back(pair_row(pair, estimates));
+    agreeing += result.evidence.back().passed() ? 1U : 0U;
   }
   std::vector<std::string> scattering;
   for (const ComparedParameter& p : result.parameters) {
-    if (p.p >= kContradicts) continue;
-    result.evidence.push_back(row_of(p));
+    Evidence row = row_of(Check::kOneValue, p.name, p.p).with("between", p.between_sigma);
+    if (row.passed()) continue;
+    result.evidence.push_back(std::move(row));
     scattering.push_back(p.name);
   }
   result.text =

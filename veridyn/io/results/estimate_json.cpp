@@ -60,6 +60,13 @@ ParameterStatus read_status(const std::string& text, const std::string& place) {
                          text));
 }
 
+/// Files of versions before 0.9 have no number.
+void check_schema(const ordered_json& root, const std::string& file) {
+  if (!root.is_object() || !root.contains("schema")) return;
+  if (root["schema"] != kEstimateSchema)
+    throw InputError(file, fmt::format("has schema {}; this version reads {}", root["schema"].dump(), kEstimateSchema));
+}
+
 /// A usable parameter has a value, and no error bar is negative. What was rejected or not excited may have neither.
 void check_parameter(const Parameter& p, const std::string& file) {
   const bool usable = p.status != ParameterStatus::kNotExcited && p.status != ParameterStatus::kRejected;
@@ -291,6 +298,7 @@ std::vector<estimation::RecordingUse> read_recordings(const ordered_json& root, 
 
 std::string to_json(const Estimate& estimate) {
   ordered_json root;
+  root["schema"] = kEstimateSchema;
   root["subject"] = estimate.subject;
   root["method"] = estimate.method;
   if (estimate.interrupted) root["interrupted"] = true;
@@ -359,6 +367,7 @@ Estimate read_estimate(const std::filesystem::path& path) {
   } catch (const nlohmann::json::parse_error& error) {
     throw InputError(name, fmt::format("not JSON at byte {}", error.byte));
   }
+  check_schema(root, name);
   Estimate estimate;
   estimate.subject = read_text(root, "subject", name);
   estimate.method = read_text(root, "method", name);

@@ -5,23 +5,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 
 namespace veridyn::muscle {
 namespace {
 
+using estimation::Cause;
+using estimation::Check;
 using estimation::Evidence;
+using estimation::info_of;
 using estimation::Outcome;
 using estimation::passed_or;
-using estimation::Purpose;
-
-/// Correlation of measured and predicted moments below which they go against each other.
-constexpr double kOpposite = -0.5;
-/// Share of the moments' variance that the estimate leaves, from which on the EMG hardly explains them.
-constexpr double kUnexplained = 0.5;
-/// Share of samples at which an excitation may stand at its limit.
-constexpr double kSaturated = 0.05;
+using estimation::row_of;
 
 /// Sums over the trained tasks of an output, about each task's own mean where `centred`.
 struct Moments {
@@ -60,106 +58,59 @@ Moments moments_of(const EmgFindings& f, Eigen::Index output, bool of_standard) 
 
 /// One row for all moments: the worst decides.
 Evidence check_sign(const EmgFindings& f) {
-  Evidence row{.name = "sign of the moments",
-               .value = kNaN,
-               .limit = kOpposite,
-               .scale = "correlation with the standard model's",
-               .bears_on = Purpose::kData | Purpose::kParameters | Purpose::kPrediction};
+  double worst = kNaN;
   std::vector<std::string> opposite;
   for (std::size_t o = 0; o < f.outputs.size(); ++o) {
     if (f.outputs[o].kind != MuscleOutputKind::kMoment) continue;
     const double correlation = moments_of(f, o, true).correlation();
     if (std::isnan(correlation)) continue;
-    if (std::isnan(row.value) || correlation < row.value) row.value = correlation;
-    if (correlation < kOpposite) opposite.push_back(std::string(f.model.outputs()[o].name));
+    if (std::isnan(worst) || correlation < worst) worst = correlation;
+    if (correlation < info_of(Check::kMomentSign).tolerance.lowest)
+      opposite.push_back(std::string(f.model.outputs()[o].name));
   }
-  if (std::isnan(row.value)) {
-    row.outcome = Outcome::kNotVerified;
-    row.text = "no moment was measured that changes";
-    return row;
-  }
-  row.outcome = passed_or(opposite.empty(), Outcome::kFailed);
-  row.text = opposite.empty()
-                 ? "measured moments go with what the standard model's muscles make of the EMG"
-                 : fmt::format(
-                       "{} measured against what the muscles make of the EMG (correlation {:.2f}): the sign of "
-                       "the moments is the other way round, or electrodes of flexors and extensors are swapped",
-                       fmt::join(opposite, ", "), row.value);
-  if (!opposite.empty())
-    row.advice =
-        "moments are those of OpenSim's inverse dynamics, positive where the coordinate grows; check "
-        "[emg.columns]";
-  return row;
+  if (std::isnan(worst)) return row_of(Check::kMomentSign, "", Outcome::kNotVerified);
+  Evidence row = row_of(Check::kMomentSign, "", worst);
+  if (!row.passed()) row.cause = Cause::kSign;
+  return std::move(row).with("outputs", fmt::format("{}", fmt::join(opposite, ", ")));
 }
 
 Evidence check_explained(const EmgFindings& f) {
-  Evidence row{.name = "what the EMG explains",
-               .value = 1.0,
-               .limit = 1.0 - kUnexplained,
-               .scale = "share of the measured variance",
-               .bears_on = Purpose::kParameters | Purpose::kPrediction};
-  std::string worst;
+  double least = kNaN;
+  std::string output;
   for (std::size_t o = 0; o < f.outputs.size(); ++o) {
     const Moments m = moments_of(f, o, false);
-    if (!(m.measured > 0.0)) continue;
     const double share = 1.0 - m.error / m.measured;
-    if (!worst.empty() && share >= row.value) continue;
-    row.value = share;
-    worst = f.model.outputs()[o].name;
+    if (!(m.measured > 0.0) || share >= least) continue;
+    least = share;
+    output = f.model.outputs()[o].name;
   }
-  row.outcome = passed_or(row.value >= row.limit, Outcome::kCare);
-  row.text = fmt::format("with the estimate the recorded EMG explains {:.0f} % of what is measured{}",
-                         100.0 * std::max(0.0, row.value), worst.empty() ? "" : " (least of " + worst + ")");
-  if (!row.passed()) {
-    row.text += ": most of it comes from something else, or the recordings do not belong together";
-    row.advice = "check clocks, electrodes, and whether the model has the muscles that move this joint";
-  }
-  return row;
+  Evidence row = row_of(Check::kExplainedByEmg, "", least);
+  if (!row.passed()) row.cause = Cause::kMissingTerm;
+  return std::move(row).with("output", output);
 }
 
 Evidence check_saturation(const EmgFindings& f) {
   double most = 0.0;
-  std::string where;
+  std::string muscle, task;
   for (std::size_t s = 0; s < f.model.segments(); ++s) {
     const std::vector<double> share = f.model.saturation(s, f.theta);
     for (std::size_t m = 0; m < share.size(); ++m) {
       if (share[m] <= most) continue;
       most = share[m];
-      where = fmt::format("{} in {}", f.system.model().muscles[m].name(), f.model.segment_name(s));
+      muscle = f.system.model().muscles[m].name();
+      task = f.model.segment_name(s);
     }
   }
-  Evidence row{.name = "excitations beyond the maximum",
-               .outcome = passed_or(most <= kSaturated, Outcome::kCare),
-               .value = most,
-               .limit = kSaturated,
-               .scale = "share of samples",
-               .text = "gain times EMG stays within 0 .. 1",
-               .bears_on = Purpose::kParameters};
-  if (most > 0.0)
-    row.text = fmt::format("gain times EMG is above 1, where it is cut off, in {:.2g} % of the samples ({})",
-                           100.0 * most, where);
-  if (!row.passed())
-    row.advice =
-        "the EMG's maximum is not that of a maximum contraction, or the muscle is stronger than the model's: "
-        "estimate max_isometric_force in place of the gain";
-  return row;
+  Evidence row = row_of(Check::kBeyondMaximum, "", most);
+  if (!row.passed()) row.cause = Cause::kSaturation;
+  return std::move(row).with("muscle", muscle).with("task", task);
 }
 
 Evidence check_error(const EmgFindings& f) {
-  Evidence row{.name = "error of the EMG",
-               .value = f.error.relative,
-               .limit = kNaN,
-               .scale = "of its value",
-               .bears_on = Purpose::kParameters};
-  if (f.error.any()) {
-    row.text = fmt::format("intervals hold the error of {:.3g} % that is stated of the envelopes, alike over {:.2g} s",
-                           100.0 * f.error.relative, 2.0 * f.error.spacing());
-    return row;
-  }
-  row.outcome = Outcome::kCare;
-  row.text = "the EMG is taken as exact: what its error makes of the moments is in no interval";
-  row.advice = "state it: emg.noise = \"10 %\"";
-  return row;
+  Evidence row = row_of(Check::kEmgError, "", passed_or(f.error.any(), Outcome::kCare));
+  row.value = f.error.relative;
+  if (!row.passed()) row.cause = Cause::kMissing;
+  return std::move(row).with("alike_s", 2.0 * f.error.spacing());
 }
 
 }  // namespace

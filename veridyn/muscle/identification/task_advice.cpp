@@ -69,7 +69,7 @@ class Foretelling {
     for (Eigen::Index k = 0; k < P_.rows(); ++k) {
       const std::size_t i = at(free_[k]);
       const estimation::Parameter& p = estimate_.best.parameters[i];
-      if (estimate_.verdicts[i] == TaskVerdict::kAtBound || !counts[k]) continue;
+      if (p.status == estimation::ParameterStatus::kAtBound || !counts[k]) continue;
       const double half = 0.5 * (p.high95 - p.low95) * std::sqrt(std::max(0.0, then(k)) / P_(k, k)) *
                           std::sqrt(estimate_.chi_square > 1.0 ? estimate_.chi_square : 1.0);
       const estimation::ModelParameter& own = model_.parameters()[i];

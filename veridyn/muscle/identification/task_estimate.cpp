@@ -11,6 +11,7 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/core/quiet_progress.hpp"
+#include "veridyn/estimation/judgement/limits.hpp"
 #include "veridyn/estimation/output_error/correlated_noise_model.hpp"
 #include "veridyn/muscle/identification/null_directions.hpp"
 #include "veridyn/muscle/identification/task_residuals.hpp"
@@ -32,8 +33,6 @@ constexpr int kCoarseSteps = 8, kCoarseRounds = 12;
 constexpr double kCoarseFall = 0.3, kCoarseRests = 0.7;
 /// Change of the parameters in standard deviations from which a search goes on.
 constexpr double kFineTolerance = 0.2;
-/// Share of the prior's variance that the data have to remove of a weak parameter.
-constexpr double kWeakShareOfPrior = 0.25;
 /// Difference of two negative log posteriors up to which fits are as good: at least this, and that of the region that
 /// holds all parameters together with 95 %.
 constexpr double kAsGood = 6.0;
@@ -44,11 +43,9 @@ constexpr double kCorrelated = 0.15;
 constexpr double kOfStatedSize = 1.5, kLikelierByChance = 3.84;
 
 /// Where the first searches leave what is not noise: searches and points of the screening in all, in units of theirs,
-/// the correlation of neighbouring residuals from which they are motion, and by how many standard deviations of chance
-/// chi-square has to exceed its mean (a search in vain costs time only).
+/// and by how many standard deviations of chance chi-square has to exceed its mean (a search in vain costs time only).
 constexpr int kFurtherStarts = 3, kFurtherScreened = 8;
-constexpr double kBeyondChance = 2.0;
-constexpr double kLooksLikeMotion = 0.3;
+constexpr double kWorthASearch_sigma = 2.0;
 
 /// View of one estimation.
 class TaskEstimation {
@@ -238,9 +235,10 @@ class TaskEstimation {
   /// Whether the best fit leaves no more than the noise; where that is not known, nothing that looks like motion.
   [[nodiscard]] bool explained() const {
     const std::vector<RowMatrix> e = residuals();
-    if (noise_.size() == 0) return lag1_of(e) < kLooksLikeMotion || share_of_motion(e, measured_) < kIntegrationShare;
+    if (noise_.size() == 0)
+      return lag1_of(e) < estimation::kAutocorrelated || share_of_motion(e, measured_) < kIntegrationShare;
     const double freedom = std::max(1.0, static_cast<double>(values_) - unknowns());
-    return squares_of(e, scale()) / freedom < 1.0 + kBeyondChance * std::sqrt(2.0 / freedom);
+    return squares_of(e, scale()) / freedom < 1.0 + kWorthASearch_sigma * std::sqrt(2.0 / freedom);
   }
 
   /// Searches from some points coarsely, finishes the best two, and keeps the best of all searches so far.
@@ -376,52 +374,28 @@ class TaskEstimation {
     for (std::size_t i = 0; i < n; ++i) {
       estimation::Parameter& p = e.parameters[i];
       if (model_.parameters()[i].fixed) {
-        result_.verdicts.push_back(TaskVerdict::kFixed);
+        p.status = ParameterStatus::kFixed;
         continue;
       }
       if (white || p.sigma < p.sigma_white) p.sigma = p.sigma_white;
       set_interval(p, std::max(1.0, e.degrees_of_freedom));
-      result_.verdicts.push_back(verdict_of(i));
-      p.status = status_of(result_.verdicts.back());
+      p.status = status_of(i);
     }
     const NullDirections null = null_directions(model_.parameters(), e.covariance_white, 1.0 - kWeakShareOfPrior);
     result_.null_directions = null.texts;
     result_.null_vectors = null.vectors;
   }
 
-  [[nodiscard]] TaskVerdict verdict_of(std::size_t i) const {
+  [[nodiscard]] ParameterStatus status_of(std::size_t i) const {
     const estimation::Parameter& p = result_.best.parameters[i];
-    if (p.status == ParameterStatus::kAtBound) return TaskVerdict::kAtBound;
+    if (p.status == ParameterStatus::kAtBound) return p.status;
     const double learned = result_.learned(i);
+    if (learned < kWeakShareOfPrior) return ParameterStatus::kNotExcited;
     // What explains the motion as well with a value outside the interval does not leave the interval known.
-    for (const Eigen::VectorXd& rival : rivals_) {
-      const double other = rival(i);
-      if (learned >= kWeakShareOfPrior && !(other >= p.low95 && other <= p.high95))
-        return TaskVerdict::kNotIdentifiable;
-    }
-    if (learned >= kIdentifiedShare) return TaskVerdict::kIdentified;
-    if (learned >= kWeakShareOfPrior) return TaskVerdict::kWeak;
-    // Were all others known: the variance inflation says by how much they spread it.
-    const double prior = model_.parameters()[i].prior_sigma;
-    const double alone = p.sigma_white / std::sqrt(std::max(1.0, p.variance_inflation));
-    return alone < 0.5 * prior ? TaskVerdict::kNotIdentifiable : TaskVerdict::kHeldByPrior;
-  }
-
-  static ParameterStatus status_of(TaskVerdict verdict) {
-    switch (verdict) {
-      case TaskVerdict::kIdentified:
-        return ParameterStatus::kIdentified;
-      case TaskVerdict::kWeak:
-        return ParameterStatus::kWeak;
-      case TaskVerdict::kAtBound:
-        return ParameterStatus::kAtBound;
-      case TaskVerdict::kFixed:
-        return ParameterStatus::kFixed;
-      case TaskVerdict::kHeldByPrior:
-      case TaskVerdict::kNotIdentifiable:
-        break;
-    }
-    return ParameterStatus::kNotExcited;
+    const bool rivalled = std::ranges::any_of(
+        rivals_, [&](const Eigen::VectorXd& rival) { return !(rival(i) >= p.low95 && rival(i) <= p.high95); });
+    if (rivalled) return ParameterStatus::kNotExcited;
+    return learned >= kIdentifiedShare ? ParameterStatus::kIdentified : ParameterStatus::kWeak;
   }
 
   const estimation::ParametricModel& model_;
@@ -443,24 +417,6 @@ void TaskEstimateOptions::validate() const {
     throw InputError("identify.starts", fmt::format("is {}; must be from 1 to 1000", starts));
   if (screened < starts || screened > 100000)
     throw InputError("identify.screened", fmt::format("is {}; must be from starts = {} to 100000", screened, starts));
-}
-
-std::string_view to_string(TaskVerdict verdict) {
-  switch (verdict) {
-    case TaskVerdict::kIdentified:
-      return "identified";
-    case TaskVerdict::kWeak:
-      return "weak";
-    case TaskVerdict::kHeldByPrior:
-      return "held by the prior";
-    case TaskVerdict::kNotIdentifiable:
-      return "not identifiable from these tasks";
-    case TaskVerdict::kAtBound:
-      return "at its bound";
-    case TaskVerdict::kFixed:
-      return "fixed";
-  }
-  return "";
 }
 
 std::vector<MuscleUnknown> with_bound_priors(std::vector<MuscleUnknown> unknowns) {

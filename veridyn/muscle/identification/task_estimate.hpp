@@ -36,30 +36,23 @@ struct TaskSearch {
   std::string message;
 };
 
-/// What the tasks say of a parameter, in a word of the report.
-enum class TaskVerdict {
-  kIdentified,       ///< the data removed three quarters of the variance that the prior leaves, or more
-  kWeak,             ///< a quarter or more
-  kHeldByPrior,      ///< the tasks hardly move with it: even alone it would not be determined
-  kNotIdentifiable,  ///< the tasks move with it, but as much with others: only combinations are determined
-  kAtBound,
-  kFixed,
-};
 /// Share of the prior's variance that the tasks have to remove of an identified parameter.
 inline constexpr double kIdentifiedShare = 0.75;
-/// "identified", "weak", "held by the prior", "not identifiable from these tasks", "at its bound", "fixed".
-[[nodiscard]] std::string_view to_string(TaskVerdict verdict);
+/// Of a weak one; of one that they remove less of, nothing is known but the prior: it is not excited.
+inline constexpr double kWeakShareOfPrior = 0.25;
 
 /// An estimate from all tasks at once.
 struct TaskEstimate {
+  /// The status of a parameter is what the tasks say of it: identified or weak by the share of its prior's variance
+  /// that they removed; not excited where they hardly move with it, as much with others, or another search ends outside
+  /// its interval with as good a fit.
   estimation::OutputErrorEstimate best;
   std::vector<TaskSearch> searches;  ///< the first is from the model's values
   std::size_t chosen = 0;            ///< of them
   /// Whether another search ends with as good a fit at other values: one within the 95 % region of all parameters
   /// together. What it puts outside its interval is not identifiable.
   bool ambiguous = false;
-  std::vector<TaskVerdict> verdicts;  ///< by parameter
-  Eigen::VectorXd learned;            ///< by parameter: share of the prior's variance that the data removed
+  Eigen::VectorXd learned;  ///< by parameter: share of the prior's variance that the data removed
   /// Combinations that the tasks leave to the prior, in words: "A max_isometric_force against B max_isometric_force".
   std::vector<std::string> null_directions;
   Eigen::MatrixXd null_vectors;  ///< parameters x directions, in units of the priors' standard deviations, unit length

@@ -33,18 +33,13 @@ struct TaskFindings {
   bool along_angles = false;  ///< muscles along recorded angles, driven by EMG
 };
 
-/// Name of the row that says how many parameters the tasks determine.
-inline constexpr const char* kDetermined = "what the tasks determine";
-/// Name of the row that refuses parameters far from where the intervals' line was laid.
-inline constexpr const char* kDistance = "distance from the standard model";
-
-/// The rows, one function a check: residual against the noise, its correlation, hold-out against the standard model and
-/// the noise, bounds, searches that agree, distance from the standard model, what is determined at all, tasks, wraps,
-/// reserves, what is taken as given.
+/// The rows, one function a check: residual against the noise, its correlation, unseen tasks against the standard model
+/// and the noise, bounds, searches that agree, distance from the standard model, what is determined at all, tasks,
+/// wraps, reserves, what is taken as given.
 [[nodiscard]] std::vector<estimation::Evidence> judge_tasks(const TaskFindings& findings);
 
-/// "task 8: flexion 0-130 deg" against the noise and the standard model: rows about tasks that no estimate saw.
-[[nodiscard]] estimation::Evidence judge_hold_out(const std::vector<TaskOutcome>& tasks, double noise,
-                                                  double trained_rmse);
+/// Tasks that no estimate saw against the noise and the standard model.
+[[nodiscard]] std::vector<estimation::Evidence> judge_hold_out(const std::vector<TaskOutcome>& tasks, double noise,
+                                                               double trained_rmse);
 
 }  // namespace veridyn::muscle

@@ -14,6 +14,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/muscle/identification/emg_estimate.hpp"
 #include "veridyn/muscle/identification/emg_judgement.hpp"
 #include "veridyn/muscle/identification/task_posterior.hpp"
@@ -157,7 +158,7 @@ std::string method_of(const TaskStudy& study) {
 /// A residual beyond the noise widens what it cannot refuse (Birge 1932): the factor of all variances.
 double widening_of(const TaskEstimate& e) { return e.chi_square > 1.0 ? e.chi_square : 1.0; }
 
-/// The estimate's parameters with their intervals widened, and what the group's verdict makes of their words.
+/// The estimate's parameters with their intervals widened, as the group's verdict marks them.
 std::vector<estimation::Parameter> judged_parameters(const TaskEstimate& e, estimation::GroupVerdict verdict) {
   std::vector<estimation::Parameter> parameters = e.best.parameters;
   for (estimation::Parameter& p : parameters) {
@@ -166,24 +167,19 @@ std::vector<estimation::Parameter> judged_parameters(const TaskEstimate& e, esti
       p.sigma *= std::sqrt(widening_of(e));
       estimation::set_interval(p, std::max(1.0, e.best.degrees_of_freedom));
     }
-    // Whether an interval is wide is said against the prior here, not against the value.
-    if (p.status == estimation::ParameterStatus::kNotExcited) continue;
-    if (verdict == estimation::GroupVerdict::kRejected) p.status = estimation::ParameterStatus::kRejected;
-    if (verdict == estimation::GroupVerdict::kEffective && p.status != estimation::ParameterStatus::kAtBound)
-      p.status = estimation::ParameterStatus::kEffective;
   }
-  return parameters;
+  return estimation::marked(std::move(parameters), verdict);
 }
 
 /// The group's verdict in a sentence.
-std::string reason_of(const estimation::ParameterGroup& group, const TaskEstimate& e,
-                      const std::vector<TaskOutcome>& tasks) {
+std::string reason_of(const estimation::ParameterGroup& group, const std::vector<TaskOutcome>& tasks) {
   const auto& why = group.judgement.parameters.decided_by;
   const std::string first = why.empty() ? "it could not be judged" : why.front();
   if (group.verdict == estimation::GroupVerdict::kIdentified)
-    return fmt::format("{} of {} parameters identified from {} tasks",
-                       std::count(e.verdicts.begin(), e.verdicts.end(), TaskVerdict::kIdentified), e.verdicts.size(),
-                       std::count_if(tasks.begin(), tasks.end(), [](const auto& t) { return !t.hold_out; }));
+    return fmt::format(
+        "{} of {} parameters identified from {} tasks",
+        std::ranges::count(group.parameters, estimation::ParameterStatus::kIdentified, &estimation::Parameter::status),
+        group.parameters.size(), std::count_if(tasks.begin(), tasks.end(), [](const auto& t) { return !t.hold_out; }));
   return group.verdict == estimation::GroupVerdict::kEffective
              ? fmt::format("predicts, but its values are no physical constants: {}", first)
              : fmt::format("rejected: {}", first);
@@ -196,10 +192,13 @@ TaskAdvice advice_for(const TaskStudy& study, const MuscleParametricModel& model
   TaskAdvice advice;
   for (const estimation::Evidence& row : rows) {
     // More tasks mend these.
-    if (row.name == kDetermined || row.name == kDistance || row.outcome != estimation::Outcome::kFailed) continue;
-    if (row.bears_on.contains(estimation::Purpose::kParameters)) advice.withheld = row.text;
+    if (row.check == estimation::Check::kDeterminedByTasks || row.check == estimation::Check::kDistanceFromStart)
+      continue;
+    if (row.outcome != estimation::Outcome::kFailed || !row.bears_on.contains(estimation::Purpose::kParameters))
+      continue;
+    advice.withheld = estimation::says(row);
+    return advice;
   }
-  if (!advice.withheld.empty()) return advice;
   std::vector<int> used;
   for (const Task& task : study.tasks) used.push_back(task.number);
   std::vector<std::string> left_out;
@@ -222,15 +221,6 @@ std::vector<estimation::NextMeasurement> next_measurements(const TaskAdvice& adv
     next.push_back({task.name, advice.now.parameter, advice.now.share, task.then.parameter, task.then.share});
   }
   return next;
-}
-
-/// The row about what is determined, where it did not pass, says which task is best.
-std::vector<estimation::Evidence> with_advice(std::vector<estimation::Evidence> rows, const TaskAdvice& advice) {
-  for (estimation::Evidence& row : rows) {
-    if (row.name != kDetermined || row.passed() || advice.tasks.empty()) continue;
-    row.advice = fmt::format("perform {} next: {}; or {}", advice.tasks.front().name, advice.text(), row.advice);
-  }
-  return rows;
 }
 
 /// What a route found, and what it asked of the model.
@@ -403,10 +393,10 @@ MuscleAnalysis identify(const TaskStudy& study, Progress& progress, numerics::Va
   if (study.advice && !progress.interrupted()) a.advice = advice_for(study, *trained.forward, a.result, rows, progress);
   a.interrupted = progress.interrupted();
   if (a.interrupted) return a;
-  estimation::ParameterGroup group = judged_group(study.subject.title, with_advice(std::move(rows), a.advice));
+  estimation::ParameterGroup group = judged_group(study.subject.title, std::move(rows));
   group.method = method_of(study);
   group.parameters = judged_parameters(a.result, group.verdict);
-  group.reason = reason_of(group, a.result, a.tasks);
+  group.reason = reason_of(group, a.tasks);
   group.methods.push_back({group.method, true, a.result.best.message, group.parameters});
   a.predictions = predictions_of(a.tasks, a.outputs);
   a.estimate = estimate_of(group, widening_of(a.result) * a.result.best.covariance, a.tasks, a.predictions);
@@ -449,10 +439,10 @@ MuscleAnalysis validate(const TaskStudy& study, const estimation::Estimate& esti
   a.predictions = predictions_of(a.tasks, a.outputs);
   const Eigen::VectorXd noise = stated_noise(study);
   estimation::ParameterGroup group =
-      judged_group(study.subject.title, {judge_hold_out(a.tasks, noise.size() > 0 ? noise(0) : 0.0, kNaN)});
+      judged_group(study.subject.title, judge_hold_out(a.tasks, noise.size() > 0 ? noise(0) : 0.0, kNaN));
   const bool holds = group.judgement.prediction.grade != estimation::Grade::kNo;
   group.verdict = holds ? estimation::GroupVerdict::kIdentified : estimation::GroupVerdict::kRejected;
-  group.reason = fmt::format("{}: {}", holds ? "holds" : "does not hold", group.evidence.front().text);
+  group.reason = fmt::format("{}: {}", holds ? "holds" : "does not hold", estimation::says(group.evidence.front()));
   group.method = estimate.method;
   group.parameters = estimate.parameters;
   a.estimate = estimate_of(group, estimate.covariance, a.tasks, a.predictions);

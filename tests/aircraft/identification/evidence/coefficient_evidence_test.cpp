@@ -91,8 +91,7 @@ TEST(CoefficientEvidence, TakesAMethodThatTheUserFixesWithCare) {
 
 TEST(CoefficientEvidence, CollinearityMattersWhereTheResidualIsMoreThanNoise) {
   estimation::RegressionComparison comparison = recommended();
-  comparison.checks = {
-      {.name = "collinearity", .outcome = Outcome::kCare, .bears_on = estimation::Purpose::kParameters}};
+  comparison.estimates.push_back({.condition_number = 1000.0});
   CoefficientChecks checks = sound();
   EXPECT_EQ(judged(checks, comparison).parameters.grade, Grade::kYes);
   checks.error_ratio = 9.0;
@@ -164,7 +163,7 @@ TEST(CoefficientEvidence, IsAboutItsCoefficient) {
   CoefficientChecks checks = sound();
   checks.error_over_start = 1.0;
   estimation::RegressionComparison comparison = recommended();
-  comparison.checks = {{.name = "collinearity"}};
+  comparison.estimates.push_back({.condition_number = 1.0});
   std::vector<std::string> names;
   for (const Evidence& row : coefficient_evidence("CL", checks, comparison, {})) {
     EXPECT_EQ(row.about, "CL") << row.name;
@@ -189,7 +188,7 @@ TEST(CoefficientEvidence, CollinearParametersAreNotIdentified) {
   estimate.condition_number = 80.0;
   estimate.parameters = parameters;
   estimation::RegressionComparison comparison = recommended();
-  comparison.checks = {estimation::collinearity(estimate)};
+  comparison.estimates = {estimate};
   CoefficientChecks checks = sound();
   checks.holdout_fit.r2 = 0.98;
   checks.error_ratio = 9.0;

@@ -91,7 +91,7 @@ TEST(NoiseFreeDrive, IsNotRejectedForWhatSensorsWouldLeaveAndItsIntervalsHoldThe
     EXPECT_EQ(id.verdict, estimation::GroupVerdict::kIdentified) << structure << ": " << id.reason;
     EXPECT_LT(worst_miss(id), 1.0) << structure;
     for (const estimation::Evidence& row : id.checks)
-      if (row.check == Check::kResidualBeyondSensors) EXPECT_EQ(row.outcome, Outcome::kNotVerified) << says(row);
+      if (row.check == Check::kAutocorrelatedResidual) EXPECT_EQ(row.outcome, Outcome::kNotVerified) << says(row);
   }
 }
 

@@ -88,7 +88,7 @@ TEST(VehicleJudgement, MotionThatTheBicycleDoesNotHaveLeavesThePredictionOnly) {
   const VehicleJudgement found = c.judge();
   EXPECT_EQ(found.verdict, estimation::GroupVerdict::kEffective);
   EXPECT_THAT(found.reason, HasSubstr("its values are no physical constants"));
-  EXPECT_THAT(not_passed(found), ElementsAre(Check::kResidualBeyondSensors, Check::kUnmodelledShare));
+  EXPECT_THAT(not_passed(found), ElementsAre(Check::kAutocorrelatedResidual, Check::kUnmodelledShare));
   EXPECT_NEAR(judged_row(found, Check::kUnmodelledShare).value, 0.3, 0.005);
   EXPECT_EQ(found.judgement.parameters.grade, estimation::Grade::kNo);
   EXPECT_EQ(found.judgement.prediction.grade, estimation::Grade::kYes);
@@ -158,7 +158,7 @@ TEST(VehicleJudgement, GradesAResidualByItsSizeAndItsAutocorrelation) {
     Case c;
     c.fit.quantities = {yaw_rate(0.99, rmse, lag1)};
     c.validation.quantities = {yaw_rate(0.98, rmse, lag1)};
-    return judged_row(c.judge(), Check::kResidualBeyondSensors).outcome;
+    return judged_row(c.judge(), Check::kAutocorrelatedResidual).outcome;
   };
   EXPECT_EQ(outcome(0.014, 0.9), Outcome::kPassed);
   EXPECT_EQ(outcome(0.018, 0.9), Outcome::kCare);
@@ -229,7 +229,7 @@ TEST(CheckAgreement, ComparesTheMethodsWithinTheirErrorBars) {
 TEST(VehicleJudgement, HasARowForEveryCheckOfASoundEstimate) {
   std::vector<Check> checks;
   for (const estimation::Evidence& row : Case().judge().checks) checks.push_back(row.check);
-  EXPECT_THAT(checks, ElementsAre(Check::kResidualBeyondSensors, Check::kUnmodelledShare, Check::kSimulation,
+  EXPECT_THAT(checks, ElementsAre(Check::kAutocorrelatedResidual, Check::kUnmodelledShare, Check::kSimulation,
                                   Check::kPlausibleStiffness, Check::kPlausibleStiffness, Check::kHoldOut,
                                   Check::kHoldOutResidual));
 }
@@ -261,7 +261,7 @@ TEST(VehicleJudgement, ANoiseFreeDriveIsJudgedByTheShareThatIsNotModelled) {
     c.segments.identification = {{0.0, 1.9}};
     c.fit.quantities = {yaw_rate(r2, 0.1 * std::sqrt(1.0 - r2), 0.99)};
     const VehicleJudgement found = c.judge();
-    const estimation::Evidence residual = judged_row(found, Check::kResidualBeyondSensors);
+    const estimation::Evidence residual = judged_row(found, Check::kAutocorrelatedResidual);
     EXPECT_EQ(residual.outcome, estimation::Outcome::kNotVerified) << r2;
     EXPECT_EQ(residual.cause, estimation::Cause::kNoise) << r2;
     EXPECT_EQ(judged_row(found, Check::kUnmodelledShare).outcome, outcome) << r2;

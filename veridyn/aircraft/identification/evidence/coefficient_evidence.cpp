@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/estimation/judgement/limits.hpp"
+#include "veridyn/estimation/regression/regression_evidence.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -15,10 +17,6 @@ using estimation::Evidence;
 using estimation::Outcome;
 using estimation::passed_or;
 using estimation::Purpose;
-
-/// Residual variance over what the sensors explain, up to which their noise, known to a factor of two, explains all.
-/// Beyond it something else is in the residual, and collinear regressors magnify what it does to their parameters.
-constexpr double kSensorNoiseAlone = 4.0;
 
 /// Share of the variance that is neither modelled nor sensor noise, beyond which a prediction needs care.
 constexpr double kWeakModel = 0.2;
@@ -62,7 +60,7 @@ Evidence holdout(const CoefficientChecks& checks, double least_r2) {
   const bool passed = checks.holdout_fit.r2 >= least_r2;
   const bool weak = checks.unmodelled_share > kWeakModel;
   const double explained = 100.0 * std::max(0.0, checks.holdout_fit.r2);
-  if (!passed && checks.holdout_ratio < kSensorNoiseAlone) {
+  if (!passed && checks.holdout_ratio < estimation::kNoiseKnownTo) {
     // A coefficient that hardly varies, such as drag in cruise: its parameters have their intervals all the same.
     return {
         .name = "hold-out",
@@ -162,15 +160,10 @@ std::vector<Evidence> coefficient_evidence(const std::string& name, const Coeffi
     if (std::isfinite(checks.error_over_start)) rows.push_back(against_start(checks));
     rows.push_back(parts_of_the_flight(checks, options.contradiction_level));
   }
+  if (const estimation::RegressionEstimate* examined = comparison.examined_estimate())
+    rows.push_back(estimation::collinearity(*examined, checks.error_ratio < estimation::kNoiseKnownTo));
   rows.insert(rows.end(), comparison.checks.begin(), comparison.checks.end());
-  for (Evidence& row : rows) {
-    row.about = name;
-    if (row.name == "collinearity" && !row.passed() && checks.error_ratio < kSensorNoiseAlone) {
-      row.outcome = Outcome::kPassed;
-      row.text += "; the residual is no larger than sensor noise, so the intervals hold all the same";
-      row.advice.clear();
-    }
-  }
+  for (Evidence& row : rows) row.about = name;
   return rows;
 }
 
@@ -231,11 +224,10 @@ Evidence scatter_row(const std::string& name, const estimation::GroupScatter& sc
 
 std::vector<estimation::Parameter> weak_by_collinearity(std::vector<estimation::Parameter> parameters,
                                                         std::span<const Evidence> rows) {
-  constexpr double kInflation = 10.0;  // as the row's
-  const auto row = std::ranges::find(rows, "collinearity", &Evidence::name);
+  const auto row = std::ranges::find_if(rows, estimation::is_collinearity);
   if (row == rows.end() || row->passed()) return parameters;
   for (estimation::Parameter& p : parameters)
-    if (p.status == estimation::ParameterStatus::kIdentified && p.variance_inflation > kInflation)
+    if (p.status == estimation::ParameterStatus::kIdentified && p.variance_inflation > estimation::kVarianceInflation)
       p.status = estimation::ParameterStatus::kWeak;
   return parameters;
 }

@@ -9,6 +9,8 @@
 #include "veridyn/aircraft/identification/fit/error_variance.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/judgement/agreement.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
+#include "veridyn/estimation/judgement/limits.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::aircraft::internal {
@@ -18,9 +20,6 @@ using estimation::Method;
 using estimation::RegressionComparison;
 using estimation::RegressionData;
 using estimation::RegressionEstimate;
-
-/// Factor on the standard deviation within which the noise of the sensors is known.
-constexpr double kNoiseTolerance = 2.0;
 
 /// The estimate by the given method, or the recommended one; null where there is none.
 const RegressionEstimate* choose(const RegressionComparison& comparison, std::optional<Method> method) {
@@ -60,8 +59,8 @@ RegressionComparison worst_of(std::span<const CoefficientFit> fits, std::span<co
     if (!together.recommends || together.checks.empty()) together.reason = fits[i].comparison.reason;
     together.recommends = true;
     for (estimation::Evidence row : fits[i].comparison.checks) {
-      row.text = fmt::format("{}: {}", flights[i].name, row.text);
-      const auto same = std::ranges::find(together.checks, row.name, &estimation::Evidence::name);
+      row.text = fmt::format("{}: {}", flights[i].name, estimation::says(row));
+      const auto same = std::ranges::find(together.checks, row.check, &estimation::Evidence::check);
       if (same == together.checks.end())
         together.checks.push_back(std::move(row));
       else if (row.outcome > same->outcome)
@@ -162,7 +161,7 @@ FlightFits fit_each_flight(CoefficientFit& fit, const FlightView& view) {
 
 double unmodelled_share_of(const CoefficientFit& fit) {
   const double r2 = fit_on(fit.rows.data, fit.chosen->theta).r2;
-  return (1.0 - r2) * std::max(0.0, 1.0 - kNoiseTolerance * kNoiseTolerance / fit.error_ratio);
+  return (1.0 - r2) * std::max(0.0, 1.0 - estimation::kNoiseKnownTo / fit.error_ratio);
 }
 
 CoefficientChecks check_fit(const CoefficientFit& fit, double row_interval_s, const FlightFits* each,

@@ -139,8 +139,7 @@ void take_output_error(CoefficientFit& fit, const ChosenOutputError& flown, cons
   if (scatters) widen_to_scatter(*part, *scatter, view.options.significance);
   const bool converged = run.estimate.termination == estimation::OutputErrorTermination::kConverged;
   fit.comparison.recommends = converged;
-  std::erase_if(fit.comparison.checks, [](const Evidence& row) { return row.name != "collinearity"; });
-  fit.comparison.checks.push_back(agreement_with_regression(*part, regression));
+  fit.comparison.checks = {agreement_with_regression(*part, regression)};
   for (std::size_t i = 0; i < fit.model.size(); ++i) fit.model.values[i] = part->theta(i);
   fit.chosen = std::move(part);
   if (!scatters) fit.unmodelled_share = unmodelled_share_of(fit);

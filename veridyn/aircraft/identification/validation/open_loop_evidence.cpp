@@ -19,23 +19,11 @@ std::optional<Evidence> horizon_row(const OpenLoop& flown, Axis axis) {
   const bool longitudinal = axis == Axis::kLongitudinal;
   const std::optional<double>& period = longitudinal ? flown.short_period_s : flown.dutch_roll_s;
   if (!period) return std::nullopt;
-  estimation::OpenLoopHorizon horizon{
-      .group = to_string(axis),
-      .period_s = *period,
-      .motion = longitudinal ? "short-period motion" : "Dutch roll",
-      .scale = longitudinal ? "short periods" : "Dutch rolls",
-      .advice_large =
-          "see in the report in which manoeuvre it leaves; a term may be missing (identify.structure), or an air-data "
-          "sensor be wrong",
-      .advice_small =
-          "trust its forecasts as far as the error found, not its bands: a small term may be missing, or gusts be "
-          "stronger than the reconstruction assumed (reconstruct.turbulence)"};
-  if (!flown.air_known) {
-    horizon.large_error = kLargeErrorInGusts;
-    horizon.advice_large = horizon.advice_small =
-        "record the ground velocity, so that gusts can be an input, or say that the air was calm "
-        "(validate.open_loop_gusts = false)";
-  }
+  estimation::OpenLoopHorizon horizon{.group = to_string(axis),
+                                      .period_s = *period,
+                                      .motion = longitudinal ? "short-period motion" : "Dutch roll",
+                                      .air_known = flown.air_known};
+  if (!flown.air_known) horizon.large_error = kLargeErrorInGusts;
   return estimation::open_loop_horizon(flown, horizon);
 }
 

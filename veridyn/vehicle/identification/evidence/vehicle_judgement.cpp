@@ -45,12 +45,12 @@ struct ResidualFinding {
 ResidualFinding check_residual(const estimation::PredictedQuantity& q, double sigma, bool noise_free) {
   const double ratio = std::pow(q.fit.rmse / sigma, 2), unexplained = std::max(0.0, 1.0 - q.fit.r2);
   if (noise_free) {
-    Evidence row = row_of(Check::kResidualBeyondSensors, q.name, Outcome::kNotVerified);
+    Evidence row = row_of(Check::kAutocorrelatedResidual, q.name, Outcome::kNotVerified);
     row.cause = Cause::kNoise;
     return {std::move(row), unexplained};
   }
-  const estimation::Tolerance& limits = estimation::info_of(Check::kResidualBeyondSensors).tolerance;
-  Evidence row = row_of(Check::kResidualBeyondSensors, q.name,
+  const estimation::Tolerance& limits = estimation::info_of(Check::kAutocorrelatedResidual).tolerance;
+  Evidence row = row_of(Check::kAutocorrelatedResidual, q.name,
                         q.lag1 > kAutocorrelated ? estimation::outcome_of(ratio, 0.0, limits) : Outcome::kPassed);
   if (!row.passed()) row.cause = Cause::kMissingTerm;
   row.value = ratio;

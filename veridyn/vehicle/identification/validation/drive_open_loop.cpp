@@ -289,20 +289,11 @@ std::vector<estimation::Evidence> open_loop_evidence(const DriveOpenLoop& driven
   if (driven.yaw_period_s) {
     const bool faster_than_steered = *driven.yaw_period_s < kShortestYawPeriod_s;
     std::optional<estimation::Evidence> row = estimation::open_loop_horizon(
-        driven,
-        {.period_s = std::max(kShortestYawPeriod_s, *driven.yaw_period_s),
-         .motion = faster_than_steered
-                       ? fmt::format("fastest steering, {:g} s (the yaw oscillation's, {:.2g} s, is shorter)",
-                                     kShortestYawPeriod_s, *driven.yaw_period_s)
-                       : "yaw oscillation",
-         .scale = faster_than_steered ? fmt::format("periods of {:g} s", kShortestYawPeriod_s)
-                                      : "periods of the yaw oscillation",
-         .advice_large =
-             "see in the report where it leaves: driven harder or at other speeds than where it was identified, "
-             "something is missing (identify.structure), or a recorded angle or speed is wrong",
-         .advice_small =
-             "trust its forecasts as far as the error found, not its bands: these know parameters, sensors and the "
-             "residual where it was identified, not another road or wind"});
+        driven, {.period_s = std::max(kShortestYawPeriod_s, *driven.yaw_period_s),
+                 .motion = faster_than_steered
+                               ? fmt::format("fastest steering, {:g} s (the yaw oscillation's, {:.2g} s, is shorter)",
+                                             kShortestYawPeriod_s, *driven.yaw_period_s)
+                               : "yaw oscillation"});
     if (row) rows.push_back(std::move(*row));
   }
   for (estimation::Evidence& row :
