@@ -93,6 +93,7 @@ struct Command {
 // Each command is made in the file of its name.
 [[nodiscard]] Command camera_command();
 [[nodiscard]] Command compare_command();
+[[nodiscard]] Command checks_command();
 [[nodiscard]] Command cue_command();
 [[nodiscard]] Command demo_command();
 [[nodiscard]] Command export_command();

@@ -23,6 +23,22 @@ TEST(Checks, HaveNamesOfTheirOwn) {
   EXPECT_EQ(check_named("a check of the future"), Check::kUnknown);
 }
 
+TEST(Checks, SayWhereTheirLimitsComeFrom) {
+  for (const CheckInfo& info : all_checks()) {
+    const Tolerance& t = info.tolerance;
+    const bool has_limit = std::isfinite(t.low) || std::isfinite(t.high) || std::isfinite(t.lowest) ||
+                           std::isfinite(t.highest) || !info.key.empty();
+    if (has_limit)
+      EXPECT_NE(info.source.kind, LimitSource::Kind::kLogic) << info.name << " has a limit without a source";
+    if (info.source.kind != LimitSource::Kind::kLogic) EXPECT_FALSE(info.source.text.empty()) << info.name;
+  }
+}
+
+TEST(Checks, HaveSentences) {
+  for (const CheckInfo& info : all_checks())
+    if (info.check != Check::kUnknown) EXPECT_FALSE(info.says.front().text.empty()) << info.name << " says nothing";
+}
+
 TEST(RowOf, TakesItsOutcomeAndTheLimitThatDecidedFromTheTable) {
   const Evidence fine = row_of(Check::kClippedSamples, "gyro", 0.001);
   EXPECT_EQ(fine.outcome, Outcome::kPassed);

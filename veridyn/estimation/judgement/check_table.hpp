@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "veridyn/estimation/judgement/check.hpp"
+
+namespace veridyn::estimation {
+
+/// "of a recording", "of a flight", ...: who is checked.
+[[nodiscard]] std::string_view to_string(CheckedOf of);
+
+/// When a row is "with care", or has failed, in words and numbers with units: "outside of 0.98 to 1.02", "above 2 s, or
+/// always". Empty: never.
+[[nodiscard]] std::string rule_of(const CheckInfo& info, Outcome outcome);
+
+/// "campaign: SampleEvidence: 0 alarms of 200 clean recordings".
+[[nodiscard]] std::string source_of(const CheckInfo& info);
+
+/// Checks of one kind, in the order of the table.
+[[nodiscard]] std::vector<const CheckInfo*> checks_of(CheckedOf of);
+
+/// All checks as tables of Markdown, one for each of `CheckedOf`: what docs/judgement.md holds.
+[[nodiscard]] std::string checks_in_markdown();
+
+}  // namespace veridyn::estimation
