@@ -5,7 +5,7 @@ import { join, relative } from 'node:path';
 
 const root = process.argv[2];
 const said = /\b(says|advice_of|name_of)\(\s*\*?(row|evidence|e|reason|r)\b[^)]*\)|\bdecided_by\b(?!\.(size|empty|push_back|begin|end|insert|clear)\()|\.reason\b|\bverdict\.headline\b/;
-const decides = /==\s*"|!=\s*"|"\s*==|"\s*!=|\.(find|starts_with|ends_with|contains|compare|rfind)\(/;
+const decides = /==\s*"|!=\s*"|"\s*==|"\s*!=|\.(find|starts_with|ends_with|compare|rfind)\(/;
 // A row whose sentence names what it is about is not printed with it once more.
 const allowed = new Set(['veridyn/estimation/judgement/wording.cpp']);
 const findings = [];

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "apps/veridyn/run/console.hpp"
-#include "veridyn/estimation/judgement/check.hpp"
+#include "veridyn/estimation/judgement/reasons.hpp"
 
 namespace veridyn::app {
 
@@ -35,14 +35,12 @@ std::string methods_csv(const estimation::Analysis& analysis) {
 
 void print_judgement(const CommonOptions& options, const estimation::Estimate& estimate) {
   print_line(options, estimation::sentence_of(estimate));
-  for (const estimation::Evidence& row : estimate.evidence) {
-    if (row.outcome == estimation::Outcome::kPassed || row.bears_on.empty()) continue;
-    const std::string seen = estimation::says(row), advice = estimation::advice_of(row);
-    const bool named = row.about.empty() || seen.find(row.about) != std::string::npos;
-    print_line(options,
-               fmt::format("  {:<12} {}{}", estimation::to_string(row.outcome), named ? "" : row.about + ": ", seen));
-    if (!advice.empty()) print_line(options, fmt::format("  {:<12} {}", "", advice));
-  }
+  const estimation::Reasons reasons = estimation::reasons_of(estimate.evidence);
+  for (const estimation::Reason& reason : reasons.lines)
+    print_line(options, fmt::format("  {:<10} {}", reason.is_advice ? "to do" : estimation::to_string(reason.outcome),
+                                    reason.text));
+  if (reasons.left_out > 0)
+    print_line(options, fmt::format("  {:<10} and {} more, in the report", "", reasons.left_out));
 }
 
 std::string graded_xml(const std::string& xml, const estimation::Judgement& judgement) {

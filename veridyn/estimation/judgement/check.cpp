@@ -68,8 +68,6 @@ Evidence row_of(Check check, std::string about, Outcome outcome) {
                .value = kNaN,
                .limit = kNaN,
                .bears_on = info.bears_on};
-  row.name = std::string(info.name);
-  row.scale = std::string(info.unit);
   return row;
 }
 

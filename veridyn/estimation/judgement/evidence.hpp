@@ -127,17 +127,13 @@ struct Figure {
 /// them.
 struct Evidence {
   Check check = Check{};
-  std::string name = {};   ///< "hold-out", "accelerometer against velocity and attitude"
   std::string about = {};  ///< sensor, channel, parameter or group of parameters ("CL"); empty: all
   Cause cause = Cause::kNone;
   Outcome outcome = Outcome::kPassed;
-  double value = 0.0;      ///< the statistic; NaN where there is none
-  double sigma = 0.0;      ///< its standard error
-  double limit = 0.0;      ///< in the unit and sense of `value`: which decided, else the nearest
-  std::string scale = {};  ///< of value and limit: "p", "share of the variance", "sigma", "m/s"
-  std::string text = {};   ///< what was seen and what it means, one sentence without a full stop
+  double value = 0.0;  ///< the statistic; NaN where there is none
+  double sigma = 0.0;  ///< its standard error
+  double limit = 0.0;  ///< in the unit and sense of `value`: which decided, else the nearest
   Purposes bears_on = {};
-  std::string advice = {};           ///< what to do; empty where nothing is to be done
   Groups affects = Groups::all();    ///< the groups of parameters that rest on what was checked
   std::vector<Figure> figures = {};  ///< further numbers (SI units) and names
 

@@ -80,21 +80,13 @@ const Figure* Evidence::figure(std::string_view key) const {
   return found == figures.end() ? nullptr : &*found;
 }
 
-std::string_view name_of(const Evidence& row) {
-  return row.check == Check::kUnknown ? std::string_view(row.name) : to_string(row.check);
-}
+std::string_view name_of(const Evidence& row) { return to_string(row.check); }
 
-std::string_view unit_of(const Evidence& row) {
-  return row.check == Check::kUnknown ? std::string_view(row.scale) : info_of(row.check).unit;
-}
+std::string_view unit_of(const Evidence& row) { return info_of(row.check).unit; }
 
-std::string says(const Evidence& row) {
-  if (!row.text.empty()) return row.text;
-  return first_that_fits(info_of(row.check).says, row);
-}
+std::string says(const Evidence& row) { return first_that_fits(info_of(row.check).says, row); }
 
 std::string advice_of(const Evidence& row) {
-  if (!row.advice.empty()) return row.advice;
   return row.outcome == Outcome::kPassed ? std::string() : first_that_fits(info_of(row.check).advice, row);
 }
 

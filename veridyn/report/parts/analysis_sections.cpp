@@ -9,6 +9,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/judgement/check.hpp"
+#include "veridyn/estimation/judgement/reasons.hpp"
 #include "veridyn/report/document/number_format.hpp"
 #include "veridyn/report/parts/estimate_tables.hpp"
 
@@ -153,23 +154,11 @@ Verdict verdict_of(const estimation::Estimate& estimate) {
   const bool all =
       std::ranges::all_of(estimation::kPurposes, [&](estimation::Purpose p) { return j.of(p).grade == Grade::kYes; });
   verdict.level = all ? Level::kGood : no(j.parameters) && no(j.prediction) ? Level::kBad : Level::kCaution;
-  // The worst first, as many as a reader takes in.
-  constexpr std::size_t kMostLines = 4;
-  std::vector<const estimation::Evidence*> reasons;
-  for (const estimation::Evidence& row : estimate.evidence)
-    if (!row.passed() && !row.bears_on.empty()) reasons.push_back(&row);
-  std::ranges::stable_sort(reasons, std::greater(), [](const estimation::Evidence* row) { return row->outcome; });
-  std::vector<std::string> advice;
-  for (std::size_t i = 0; i < std::min(reasons.size(), kMostLines); ++i) {
-    const estimation::Evidence* row = reasons[i];
-    const std::string seen = estimation::says(*row), to_do = estimation::advice_of(*row);
-    const bool named = row->about.empty() || seen.find(row->about) != std::string::npos;
-    verdict.lines.push_back(named ? seen : fmt::format("{}: {}", row->about, seen));
-    if (!to_do.empty() && std::ranges::find(advice, to_do) == advice.end()) advice.push_back(to_do);
-  }
-  if (reasons.size() > kMostLines)
-    verdict.lines.push_back(fmt::format("and {} more, in \"What was checked\"", reasons.size() - kMostLines));
-  for (const std::string& text : advice) verdict.lines.push_back("What to do: " + text);
+  const estimation::Reasons reasons = estimation::reasons_of(estimate.evidence);
+  for (const estimation::Reason& reason : reasons.lines)
+    verdict.lines.push_back(reason.is_advice ? "What to do: " + reason.text : reason.text);
+  if (reasons.left_out > 0)
+    verdict.lines.push_back(fmt::format("and {} more, in \"What was checked\"", reasons.left_out));
   return verdict;
 }
 
@@ -188,7 +177,11 @@ Section evidence_section(const estimation::Estimate& estimate) {
                           {.name = "as", .align = Align::kLeft},
                           {.name = "what was seen", .align = Align::kLeft},
                           {.name = "bears on", .align = Align::kLeft}}};
-  for (const estimation::Evidence& row : estimate.evidence) {
+  std::vector<const estimation::Evidence*> rows;
+  for (const estimation::Evidence& row : estimate.evidence) rows.push_back(&row);
+  std::ranges::stable_sort(rows, std::greater(), [](const estimation::Evidence* row) { return row->outcome; });
+  for (const estimation::Evidence* const each : rows) {
+    const estimation::Evidence& row = *each;
     std::string purposes;
     for (const estimation::Purpose purpose : estimation::kPurposes)
       if (row.bears_on.contains(purpose))

@@ -1,0 +1,34 @@
+#include "veridyn/estimation/judgement/reasons.hpp"
+
+#include <gtest/gtest.h>
+
+#include "veridyn/estimation/judgement/check.hpp"
+
+namespace veridyn::estimation {
+namespace {
+
+Evidence held(const char* about, double samples) {
+  return row_of(Check::kHeldSamples, about, samples).with("channel", std::string(about)).with("rate_Hz", 5.0);
+}
+
+TEST(Reasons, AreTheWorstFirstWithWhatToDoAndNothingTwice) {
+  const std::vector<Evidence> rows{
+      held("gyro", 4.0), held("vane", 9.0), held("airspeed", 1.0),
+      row_of(Check::kClippedSamples, "accel_z", 0.2).with("channel", std::string("accel_z")).with("end_of_range", 9.0)};
+  const Reasons reasons = reasons_of(rows);
+  ASSERT_EQ(reasons.lines.size(), 5U);
+  EXPECT_EQ(reasons.lines[0].outcome, Outcome::kFailed);
+  EXPECT_TRUE(reasons.lines[1].is_advice);
+  EXPECT_NE(reasons.lines[2].text.find("gyro"), std::string::npos);
+  EXPECT_TRUE(reasons.lines[3].is_advice);
+  EXPECT_NE(reasons.lines[4].text.find("vane"), std::string::npos) << "of the same advice nothing is said again";
+  EXPECT_EQ(reasons.left_out, 0U);
+  const Reasons few = reasons_of(rows, 2);
+  EXPECT_EQ(few.lines.size(), 2U);
+  EXPECT_EQ(few.left_out, 2U);
+}
+
+TEST(Reasons, AreNoneWhereAllPassed) { EXPECT_TRUE(reasons_of(std::vector{held("gyro", 1.0)}).lines.empty()); }
+
+}  // namespace
+}  // namespace veridyn::estimation
