@@ -13,7 +13,7 @@ DelayReport report(double delay_s, double sigma_s, double correlation = 0.9) {
           .delay_s = delay_s,
           .sigma_s = sigma_s,
           .correlation = correlation,
-          .text = correlation < 0.0 ? "opposite sign: is the channel's sign right?" : ""};
+          .finding = correlation < 0.0 ? DelayFinding::kOppositeSign : DelayFinding::kApplied};
 }
 
 TEST(TimeOrder, IsEarlyBeyondLimitAndChance) {
@@ -41,7 +41,7 @@ TEST(TimeOrder, NamesWhatIsEarlyOrOpposite) {
 TEST(TimeOrder, TellsHowToTakeOffADelayInDoubt) {
   DelayReport servo = report(0.07, 0.01, 0.7);
   EXPECT_FALSE(is_doubtful(servo, {})) << "it was taken off";
-  servo.in_doubt = true;
+  servo.finding = DelayFinding::kInDoubt;
   EXPECT_TRUE(is_doubtful(servo, {}));
   EXPECT_FALSE(is_doubtful(servo, {.early_s = 0.08}));
   const estimation::Evidence row = doubtful_row(servo, {});

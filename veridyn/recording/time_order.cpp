@@ -25,11 +25,11 @@ bool is_early(const DelayReport& report, const TimeOrder& order) {
 }
 
 bool is_doubtful(const DelayReport& report, const TimeOrder& order) {
-  return report.in_doubt && report.delay_s > std::max(order.early_s, estimation::kBeyondChance * report.sigma_s);
+  return report.finding == DelayFinding::kInDoubt && report.delay_s > std::max(order.early_s, estimation::kBeyondChance * report.sigma_s);
 }
 
 bool is_opposite(const DelayReport& report) {
-  return report.correlation < 0.0 && report.text.starts_with("opposite sign");
+  return report.finding == DelayFinding::kOppositeSign;
 }
 
 estimation::Evidence early_row(const DelayReport& report, const TimeOrder& order) {

@@ -18,7 +18,7 @@ struct TimeOrder {
 [[nodiscard]] bool is_early(const DelayReport& report, const TimeOrder& order);
 
 /// Whether a control seems to be recorded too early, by more than `order.early_s` and chance, but what else moves the
-/// vehicle is too much to be sure (`DelayReport::in_doubt`).
+/// vehicle is too much to be sure (DelayFinding::kInDoubt).
 [[nodiscard]] bool is_doubtful(const DelayReport& report, const TimeOrder& order);
 
 /// Whether a report is of a channel that moves against what its reference implies.

@@ -105,18 +105,17 @@ TEST(RecordingEvidence, NamesWhatTheClocksShow) {
     return recording_evidence(flown().measured, clean_reconstruction(), reference_options(), segments,
                               std::vector<DelayReport>{report});
   };
-  const auto gyro = rows_with({"attitude", "gyro", -0.1, 0.005, 0.9, true, "applied"});
+  const auto gyro = rows_with({"attitude", "gyro", -0.1, 0.005, 0.9, recording::DelayFinding::kApplied});
   EXPECT_NE(find(gyro, "gyro", Outcome::kCare), nullptr) << texts(gyro);
-  const auto elevator = rows_with({"elevator", "angular acceleration", -0.15, 0.0, 0.9, false, "negative"});
+  const auto elevator = rows_with({"elevator", "angular acceleration", -0.15, 0.0, 0.9, recording::DelayFinding::kBeforeCause});
   EXPECT_NE(find(elevator, "elevator", Outcome::kCare), nullptr) << texts(elevator);
-  const auto late = rows_with({"gps", "specific force", 0.2, 0.01, 0.9, true, "applied"});
+  const auto late = rows_with({"gps", "specific force", 0.2, 0.01, 0.9, recording::DelayFinding::kApplied});
   EXPECT_EQ(find(late, "gps", Outcome::kCare), nullptr) << texts(late);
   EXPECT_EQ(data_grade(late), Grade::kYes) << texts(late);
-  const auto opposite = rows_with({"gps", "specific force", 0.0, 0.01, -0.9, false, "opposite sign"});
+  const auto opposite = rows_with({"gps", "specific force", 0.0, 0.01, -0.9, recording::DelayFinding::kOppositeSign});
   EXPECT_NE(find(opposite, "gps", Outcome::kCare), nullptr) << texts(opposite);
   // A deflection that leads by what more is unexplained of than explained; a sensor that is late is taken as it is.
-  DelayReport servo{"elevator", "angular acceleration", 0.07, 0.01, 0.6, false, "in doubt"};
-  servo.in_doubt = true;
+  DelayReport servo{"elevator", "angular acceleration", 0.07, 0.01, 0.6, recording::DelayFinding::kInDoubt};
   EXPECT_NE(find(rows_with(servo), "elevator", Outcome::kCare), nullptr) << texts(rows_with(servo));
   servo.group = "alpha";
   EXPECT_EQ(find(rows_with(servo), "alpha", Outcome::kCare), nullptr) << texts(rows_with(servo));
@@ -147,7 +146,7 @@ TEST(RecordingEvidence, SaysWhereAVanesDelayCannotBeSeen) {
 TEST(RecordingEvidence, NamesAVaneWhoseDelaysContradictEachOther) {
   Segments segments;
   segments.airborne = {{5.0, 115.0}};
-  DelayReport vane{"beta", "gyro, accelerometer and attitude", 0.06, 0.003, 0.99, true, "applied"};
+  DelayReport vane{"beta", "gyro, accelerometer and attitude", 0.06, 0.003, 0.99, recording::DelayFinding::kApplied};
   vane.contradicted_by = {"side force (accel_y)", 0.02, 0.005};
   const auto rows = recording_evidence(flown().measured, clean_reconstruction(), reference_options(), segments,
                                        std::vector<DelayReport>{vane});
@@ -162,7 +161,7 @@ TEST(RecordingEvidence, NamesAVaneWhoseDelaysContradictEachOther) {
 TEST(RecordingEvidence, SaysWhichSurfacesHaveNoDelayOfTheirOwn) {
   Segments segments;
   segments.airborne = {{5.0, 115.0}};
-  DelayReport aileron{"aileron", "angular acceleration", 0.1, 0.02, 0.9, true, "applied"};
+  DelayReport aileron{"aileron", "angular acceleration", 0.1, 0.02, 0.9, recording::DelayFinding::kApplied};
   const auto rows_with = [&](const std::vector<DelayReport>& delays) {
     return recording_evidence(flown().measured, clean_reconstruction(), reference_options(), segments, delays);
   };
@@ -232,7 +231,7 @@ TEST(RecordingEvidence, NamesTheSensorWhoseSamplesTheReconstructionRefuses) {
 TEST(RecordingEvidence, ACauseCountsAsMuchAsWhatFollowsFromIt) {
   Segments segments;
   segments.airborne = {{5.0, 115.0}};
-  const std::vector<DelayReport> gyro_late{{"attitude", "gyro", -0.1, 0.005, 0.9, true, "applied"}};
+  const std::vector<DelayReport> gyro_late{{"attitude", "gyro", -0.1, 0.005, 0.9, recording::DelayFinding::kApplied}};
   const auto with_refused = [&](double share) {
     Reconstruction reconstruction = clean_reconstruction();
     for (SensorReport& sensor : reconstruction.sensors)

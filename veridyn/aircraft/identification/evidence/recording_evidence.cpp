@@ -93,8 +93,8 @@ std::vector<FlightEvidence> vane_delay_rows(std::span<const DelayReport> delays)
           .scale = "s",
           .text = fmt::format("how late the {} vane {}{}: it is taken as {}, and what depends on {} is off by several "
                               "percent where that is wrong by a few hundredths of a second",
-                              report.group, report.applied ? "is, is not well known" : "is cannot be seen", found,
-                              report.applied ? "found" : "recorded", report.group),
+                              report.group, report.applied() ? "is, is not well known" : "is cannot be seen", found,
+                              report.applied() ? "found" : "recorded", report.group),
           .bears_on = Purpose::kParameters,
           .advice = fmt::format("measure the delay of the vane and its filter, and give it: delays.{} = \"... ms\"",
                                 report.group)},
@@ -117,7 +117,7 @@ std::vector<FlightEvidence> together_rows(std::span<const DelayReport> delays) {
                      .scale = "s",
                      .text = fmt::format("{} move together, so that neither single delays nor single effects can be "
                                          "seen: one delay was searched for, {:.3f} +- {:.3f} s ({})",
-                                         names, report.delay_s, report.sigma_s, report.text),
+                                         names, report.delay_s, report.sigma_s, recording::says(report)),
                      .bears_on = Purpose::kData | Purpose::kParameters,
                      .advice = fmt::format("move {} one at a time in doublets of their own", names)}});
   }

@@ -207,7 +207,7 @@ std::vector<Evidence> time_rows(const DriveSignals& signals, std::span<const Tim
   if (!signals[DriveSignal::kSteer].available()) return {};
   const recording::DelayReport report = steering_delay(signals, spans, progress);
   const recording::TimeOrder order{.early_s = kEarly_s, .is_control = true};
-  const bool determined = report.correlation > 0.0 && !report.text.starts_with("not determined");
+  const bool determined = report.determined();
   if (determined && recording::is_early(report, order)) {
     Evidence early = recording::early_row(report, order);
     early.advice =
