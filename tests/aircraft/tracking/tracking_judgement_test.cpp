@@ -1,3 +1,4 @@
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/aircraft/tracking/tracking_judgement.hpp"
 
 #include <fmt/format.h>
@@ -68,7 +69,7 @@ OnLineCoverage coverage_on_line(const std::string& aircraft, std::uint64_t seeds
 
 const Evidence* row_named(const estimation::Estimate& estimate, const std::string& name, const std::string& about) {
   for (const Evidence& row : estimate.evidence)
-    if (row.name == name && row.about == about) return &row;
+    if (name_of(row) == name && row.about == about) return &row;
   return nullptr;
 }
 
@@ -141,10 +142,10 @@ TEST(TrackedEvidence, AsksWhetherAnAircraftHasSuchValues) {
   const Subject subject = builtin_subject("thor");
   const auto row = [&](double Cm_q) {
     const std::vector<Evidence> rows = tracked_evidence(tracked_cm(Cm_q), subject);
-    return *std::ranges::find(rows, "plausibility of Cm_q", &Evidence::name);
+    return *std::ranges::find(rows, estimation::Check::kPlausibleSign, &Evidence::check);
   };
-  EXPECT_EQ(row(-10.0).outcome, estimation::Outcome::kPassed) << row(-10.0).text;
-  EXPECT_EQ(row(10.0).outcome, estimation::Outcome::kCare) << row(10.0).text;
+  EXPECT_EQ(row(-10.0).outcome, estimation::Outcome::kPassed) << says(row(-10.0));
+  EXPECT_EQ(row(10.0).outcome, estimation::Outcome::kCare) << says(row(10.0));
   // What was held was not measured.
   TrackedCoefficient unknown = tracked_cm(10.0);
   const Eigen::MatrixXd W = unknown.tracker->regression().options().error_covariance;

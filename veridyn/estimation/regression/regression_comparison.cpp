@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/estimation/regression/equation_error.hpp"
 #include "veridyn/estimation/regression/regression.hpp"
 #include "veridyn/estimation/regression/regression_analysis.hpp"
@@ -38,7 +39,7 @@ Distance distance(const RegressionEstimate& scale, const Eigen::VectorXd& a, con
 }
 
 Evidence residual_autocorrelation(const RegressionEstimate& estimate) {
-  Evidence check{.name = "residual autocorrelation", .scale = "Durbin-Watson"};
+  Evidence check{.check = Check::kResidualAutocorrelation, .name = "residual autocorrelation", .scale = "Durbin-Watson"};
   check.value = estimate.whiteness.durbin_watson;
   check.limit = 2.0;
   check.outcome = passed_or(estimate.whiteness.white(), Outcome::kCare);
@@ -57,7 +58,7 @@ Evidence residual_autocorrelation(const RegressionEstimate& estimate) {
 
 // Is the residual as large as W says? Chi-square with the effective number of samples.
 Evidence error_scale(const RegressionEstimate& gtls, const Eigen::VectorXd& residual, const std::vector<int>& segment) {
-  Evidence check{.name = "error scale", .scale = "residual variance over assumed"};
+  Evidence check{.check = Check::kErrorScale, .name = "error scale", .scale = "residual variance over assumed"};
   const double samples =
       numerics::effective_sample_size_variance({residual.data(), static_cast<std::size_t>(residual.size())}, segment);
   const double low = std::min(1.0 / kScaleBand, numerics::chi_square_quantile(0.005, samples) / samples);
@@ -76,7 +77,7 @@ Evidence error_scale(const RegressionEstimate& gtls, const Eigen::VectorXd& resi
 Evidence ols_agreement(const RegressionEstimate& ols, const RegressionEstimate& candidate) {
   const std::string_view name = to_string(candidate.method);
   const Distance gap = distance(candidate, candidate.theta, ols.theta);
-  Evidence check{.name = "agreement of OLS",
+  Evidence check{.check = Check::kOlsAgreement, .name = "agreement of OLS",
                  .outcome = passed_or(gap.sigmas <= kSensitivityLimit, Outcome::kCare),
                  .value = gap.sigmas,
                  .limit = kSensitivityLimit,
@@ -107,7 +108,7 @@ OtherReading read_otherwise(const internal::RegressionAnalysis& analysis, const 
       out.too_large ? raised : with_smaller_regressor_errors(analysis.triangle(), W, analysis.rows()));
   out.moved = out.theta ? distance(candidate, candidate.theta, *out.theta) : Distance{kInfinity, ""};
   const Distance& moved = out.moved;
-  out.check = {.name = "sensitivity to the error ratio",
+  out.check = {.check = Check::kErrorRatioSensitivity, .name = "sensitivity to the error ratio",
                .outcome = passed_or(moved.sigmas <= kSensitivityLimit, Outcome::kCare),
                .value = moved.sigmas,
                .limit = kSensitivityLimit,
@@ -157,7 +158,7 @@ RegressionComparison compare_with_exact_regressors(RegressionComparison result, 
 }  // namespace
 
 Evidence collinearity(const RegressionEstimate& estimate) {
-  Evidence check{.name = "collinearity",
+  Evidence check{.check = Check::kCollinearity, .name = "collinearity",
                  .value = estimate.condition_number,
                  .limit = kConditionLimit,
                  .scale = "condition number",

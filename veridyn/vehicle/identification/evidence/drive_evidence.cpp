@@ -206,15 +206,9 @@ std::vector<Evidence> time_rows(const DriveSignals& signals, std::span<const Tim
                                 const Progress& progress) {
   if (!signals[DriveSignal::kSteer].available()) return {};
   const recording::DelayReport report = steering_delay(signals, spans, progress);
-  const recording::TimeOrder order{.early_s = kEarly_s, .is_control = true};
+  const recording::TimeOrder order{.early_s = kEarly_s, .is_control = true, .key = "data.map: steer = {..., delay"};
   const bool determined = report.determined();
-  if (determined && recording::is_early(report, order)) {
-    Evidence early = recording::early_row(report, order);
-    early.advice =
-        fmt::format("check the stamps of steer; data.map takes a delay: steer = {{ ..., delay = \"{:.0f} ms\" }}",
-                    -1000.0 * report.delay_s);
-    return {std::move(early)};
-  }
+  if (determined && recording::is_early(report, order)) return {recording::early_row(report, order)};
   Evidence row{.name = std::string(kOrderInTime),
                .about = "steer, yaw_rate",
                .outcome = determined ? outcome_of(report.delay_s, 0.0, kLate) : Outcome::kNotVerified,
