@@ -42,6 +42,9 @@ constexpr Eigen::Index kDelays = 3;
 constexpr Eigen::Index kAllUnknowns = kUnknowns + kDelays;
 /// Standard error of an inverse gain, as a share of it, beyond which its axis did not move enough.
 constexpr double kUndetermined = 0.1;
+/// Share of the reference's signal that is neither explained nor noise of it, from which on sensor and reference
+/// contradict each other whatever moved.
+constexpr double kContradicted = 0.5;
 /// The largest attenuation that counts as a doubt of a gain: what leaves more unexplained is no noise of a reading.
 constexpr double kMostAttenuated = 0.6;
 
@@ -161,6 +164,7 @@ class Equations {
     Vector3 relative_sigma = Vector3::Zero();
     Vector3 attenuation = Vector3::Zero();
     double residual_rms = 0.0;
+    bool contradicted = false;  ///< see kContradicted
   };
   /// With the gain of an axis that did not move taken as 1.
   [[nodiscard]] RegressionData data(const Moved& moved, bool delays) const;
@@ -266,11 +270,13 @@ Equations::Estimate Equations::estimate(const Moved& moved, bool delays) const {
   all.residual_rms = std::sqrt((data.regressand - data.regressors * found.theta).squaredNorm() / (3.0 * n));
   // What the noise of the reference leaves unexplained, laid to the reading of one axis.
   const double excess = std::max(0.0, 1.0 - reference_noise_ / (all.residual_rms * all.residual_rms));
+  all.contradicted = excess * std::pow(all.residual_rms / signal_rms(), 2.0) > kContradicted;
   for (std::size_t a = 0; a < places.size(); ++a) {
     const Eigen::Index k = places[a], j = k % 3;
     if (k != 4 * j || k >= 9) continue;
     const double size = std::hypot(all.theta(j), all.theta(3 + j), all.theta(6 + j));
     all.relative_sigma(j) = std::sqrt(all.covariance(k, k)) / size;
+    if (all.contradicted) continue;
     const double white = found.covariance_white(signed_index(a), signed_index(a));
     all.attenuation(j) = std::min(kMostAttenuated, 3.0 * n * excess * white / (size * size));
   }
@@ -289,7 +295,7 @@ std::optional<Solved> Equations::solve(bool delays) const {
       if (!moved[j]) rest(j) = 0.0;
     }
     Eigen::Index least = 0;
-    if (rest.maxCoeff(&least) <= 1.0) break;
+    if (rest.maxCoeff(&least) <= 1.0 || found.contradicted) break;
     moved[least] = false;
     found = estimate(moved, delays);
   }
@@ -488,8 +494,7 @@ std::vector<Evidence> inertial_evidence(const InertialConsistency& c) {
     // Where the gyro contradicts the attitude too, the attitude is the suspect.
     const bool attitude_holds = !c.gyro || !gain_fault(*c.gyro, rate, failed);
     const bool rather_velocity =
-        attitude_holds && gain_fault(*c.accelerometer, force, failed) && c.velocity &&
-        gain_fault(*c.velocity, velocity, failed) &&
+        attitude_holds && c.velocity && gain_fault(*c.velocity, velocity, failed) &&
         c.velocity->bias.cwiseAbs().maxCoeff() < estimation::info_of(Check::kVelocityBias).tolerance.highest &&
         c.velocity->unexplained() < kClearlyBetter * c.accelerometer->unexplained();
     if (rather_velocity)
