@@ -1,4 +1,3 @@
-#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/aircraft/aircraft_study.hpp"
 
 #include <fmt/format.h>
@@ -12,6 +11,7 @@
 #include "tests/support/refusal.hpp"
 #include "veridyn/aircraft/track_flight.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 
 namespace veridyn::aircraft {
 namespace {

@@ -148,8 +148,7 @@ TEST(InertialEvidence, FindsHowLateTheAccelerometerIs) {
 // A receiver that is late is that, and no accelerometer that reads more than the truth.
 TEST(InertialEvidence, NamesALateOrSmoothedVelocity) {
   for (const double late_s : {0.2, 0.4, 0.6}) {
-    const InertialConsistency c =
-        inertial_consistency(shifted({"vel_north", "vel_east", "vel_down"}, late_s), kWhole);
+    const InertialConsistency c = inertial_consistency(shifted({"vel_north", "vel_east", "vel_down"}, late_s), kWhole);
     EXPECT_NEAR(c.velocity_delay, late_s, 0.03);
     for (const estimation::Evidence& row : inertial_evidence(c)) {
       EXPECT_EQ(row.passed(), row.check != Check::kVelocityDelay) << says(row);

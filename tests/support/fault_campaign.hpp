@@ -72,8 +72,7 @@ struct NamedBy {
 
 /// What became of a fault, against the same recording without it. `found`: the
 /// program says less than of the clean recording. Grades and names are left to the caller.
-[[nodiscard]] Trial tried(const Outcomes& faulty, const Outcomes& clean, bool found,
-                          const NamedBy& named_by);
+[[nodiscard]] Trial tried(const Outcomes& faulty, const Outcomes& clean, bool found, const NamedBy& named_by);
 
 /// A line a fault, in this order: how many trials each finding had.
 [[nodiscard]] std::string confusion_table(std::span<const Trial> trials, std::span<const std::string> faults);

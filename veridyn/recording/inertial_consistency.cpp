@@ -419,8 +419,8 @@ InertialConsistency compare_velocity(const Recording& recording, const InertialS
 std::optional<SensorMatrix> compare_rates(const Recording& recording, const InertialSeries& s,
                                           std::span<const TimeSpan> spans) {
   const std::vector<double> stamps(recording.at("roll").times().begin(), recording.at("roll").times().end());
-  Equations equations(change_noise({&recording.at("roll"), &recording.at("pitch"), &recording.at("yaw")},
-                                   kAttitudeWindow_s));
+  Equations equations(
+      change_noise({&recording.at("roll"), &recording.at("pitch"), &recording.at("yaw")}, kAttitudeWindow_s));
   for (const Window& window : windows(stamps, spans, kAttitudeWindow_s, kAttitudeHop_s)) {
     const auto index = [&](double t) {
       return static_cast<std::size_t>(
@@ -450,8 +450,8 @@ Evidence delay_row(Check check, const char* about, double delay_s, double sigma_
 
 /// The delay of the velocity, or of down, where only that is conspicuous.
 Evidence velocity_delay_row(const InertialConsistency& c) {
-  const Evidence level = delay_row(Check::kVelocityDelay, "ground velocity", c.velocity_delay, c.velocity_delay_sigma,
-                                   Cause::kDelay);
+  const Evidence level =
+      delay_row(Check::kVelocityDelay, "ground velocity", c.velocity_delay, c.velocity_delay_sigma, Cause::kDelay);
   const Evidence down =
       delay_row(Check::kVelocityDelay, "ground velocity", c.vertical_delay, c.vertical_delay_sigma, Cause::kLag);
   return down.outcome > level.outcome ? down : level;

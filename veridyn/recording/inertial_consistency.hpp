@@ -32,15 +32,15 @@ struct InertialConsistency {
 /// the frame frd inside `spans`; what lacks a channel, or has fewer than 60 windows, is missing.
 ///
 /// Gains are found together with the delays, and the velocity is shifted by its own, so that a late sensor is not read
-/// as a wrong scale. First it is asked whether an axis moved enough to say anything: its inverse gain n must be known to
-/// 10 % (the inverse of a number that may be anything is no gain). What is left unexplained beyond the reference's white
-/// noise may be an error of the reading, which attenuates the inverse gain by up to
+/// as a wrong scale. First it is asked whether an axis moved enough to say anything: its inverse gain n must be known
+/// to 10 % (the inverse of a number that may be anything is no gain). What is left unexplained beyond the reference's
+/// white noise may be an error of the reading, which attenuates the inverse gain by up to
 ///     a = 3 N s^2 [(X'X)^-1]_jj / n^2
 /// (errors in variables, Fuller 1987, section 1.1): a doubt of the gain, of 0.6 at most.
 [[nodiscard]] InertialConsistency inertial_consistency(const Recording& recording, std::span<const TimeSpan> spans);
 
-/// The rows of it: gain, bias and delays of accelerometer, velocity and gyro, and, where a wrong velocity explains a contradiction better
-/// than a wrong accelerometer, of the velocity instead.
+/// The rows of it: gain, bias and delays of accelerometer, velocity and gyro, and, where a wrong velocity explains a
+/// contradiction better than a wrong accelerometer, of the velocity instead.
 [[nodiscard]] std::vector<estimation::Evidence> inertial_evidence(const InertialConsistency& consistency);
 
 }  // namespace veridyn::recording

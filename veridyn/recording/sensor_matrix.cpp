@@ -137,10 +137,11 @@ std::optional<GainFault> gain_fault(const SensorMatrix& m, const SensorNames& na
   if (auto fault = wrong_signs(m, names)) return fault;
   const double value = m.gain(worst.row, worst.column), sigma = m.gain_sigma(worst.row, worst.column);
   if (worst.row != worst.column)
-    return GainFault{.cause = Cause::kPlace,
-                     .axes = fmt::format("{} reads {:.2g} {}", axis(names, worst.row), value, axis(names, worst.column)),
-                     .factor = value,
-                     .sigma = sigma};
+    return GainFault{
+        .cause = Cause::kPlace,
+        .axes = fmt::format("{} reads {:.2g} {}", axis(names, worst.row), value, axis(names, worst.column)),
+        .factor = value,
+        .sigma = sigma};
   std::string unit = mistaken_unit(value);
   return GainFault{unit.empty() ? Cause::kScale : Cause::kUnit, axis(names, worst.row), value, sigma, std::move(unit)};
 }

@@ -10,10 +10,10 @@ namespace veridyn::recording {
 
 /// What a delay report is about, for its row.
 struct TimeOrder {
-  double early_s = 0.03;      ///< beyond three standard errors: recorded too late after (or before) what it goes with
+  double early_s = 0.03;       ///< beyond three standard errors: recorded too late after (or before) what it goes with
   double failed_s = kNever_s;  ///< and failed
-  bool is_control = false;    ///< the report's group moves what its reference shows: a surface, the steering
-  std::string key = {};       ///< of the study that takes its delay; empty: "delays.GROUP"
+  bool is_control = false;     ///< the report's group moves what its reference shows: a surface, the steering
+  std::string key = {};        ///< of the study that takes its delay; empty: "delays.GROUP"
 
   static constexpr double kNever_s = std::numeric_limits<double>::infinity();
 };

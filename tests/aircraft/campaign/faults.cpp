@@ -79,8 +79,8 @@ Change of_subject(std::function<void(Subject&)> change) {
 
 std::vector<Fault> all_faults() {
   constexpr double kKnot = 0.514444;
-  using test::NamedBy;
   using estimation::Check;
+  using test::NamedBy;
   const NamedBy accel({"accelerometer"}, {Check::kAccelerometerBias, Check::kAccelerometerDelay}),
       gyro({"gyro"}, {Check::kGyroBias, Check::kGyroDelay}), attitude({"attitude", "roll", "pitch", "yaw"}),
       velocity({"ground velocity", "vel_north", "vel_east", "vel_down"}), air({"airspeed", "dynamic_pressure"}),

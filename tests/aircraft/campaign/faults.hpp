@@ -11,7 +11,7 @@ namespace veridyn::aircraft::testing {
 
 /// One thing that is wrong with a flight: what its sensors recorded, or what is said of the aircraft.
 struct Fault {
-  std::string name;               ///< "accelerometer in g"
+  std::string name;    ///< "accelerometer in g"
   test::NamedBy rows;  ///< what names it
   std::function<void(FlightStudy&)> apply;
 };

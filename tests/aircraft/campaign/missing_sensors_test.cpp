@@ -157,15 +157,16 @@ TEST(MissingSensorsCampaign, AreNamedByTheRowsThatDecide) {
     const std::vector<Stripped> all = steps();
     const Identified flight = flown_without(study, *std::ranges::find(all, step, &Stripped::name));
     const auto& rows = flight.analysis.estimate.evidence;
-    const auto row = std::ranges::find_if(
-        rows, [&](const estimation::Evidence& e) { return e.check == check && e.about == about; });
+    const auto row =
+        std::ranges::find_if(rows, [&](const estimation::Evidence& e) { return e.check == check && e.about == about; });
     return row == rows.end() ? estimation::Evidence{} : *row;
   };
   EXPECT_EQ(row_of("pitot tube", Check::kNoAirspeedSensor, "airspeed").outcome, estimation::Outcome::kFailed);
   EXPECT_EQ(row_of("vanes", Check::kNoVane, "alpha").outcome, estimation::Outcome::kFailed);
   EXPECT_EQ(row_of("beta vane", Check::kNoVane, "beta").outcome, estimation::Outcome::kFailed);
   EXPECT_TRUE(row_of("beta vane", Check::kNoVane, "alpha").check == Check::kUnknown);
-  EXPECT_EQ(row_of("ground velocity", Check::kNoGroundVelocity, "ground velocity").outcome, estimation::Outcome::kNotVerified);
+  EXPECT_EQ(row_of("ground velocity", Check::kNoGroundVelocity, "ground velocity").outcome,
+            estimation::Outcome::kNotVerified);
   EXPECT_EQ(row_of("attitude, heading", Check::kNoAttitude, "attitude").outcome, estimation::Outcome::kNotVerified);
 }
 

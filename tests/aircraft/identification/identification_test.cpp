@@ -1,4 +1,3 @@
-#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/aircraft/identification/identification.hpp"
 
 #include <gmock/gmock.h>
@@ -9,6 +8,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/study.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 
 namespace veridyn::aircraft {
 namespace {

@@ -73,8 +73,7 @@ TEST(AlignDelays, FindsNoDelayInTurbulenceWhereThereIsNone) {
     const FlightStudy study = aircraft::testing::campaign_flight(aircraft, 3, 150.0);
     for (const DelayReport& report : align_delays(study.mapped, {}).delays) {
       EXPECT_FALSE(report.applied()) << aircraft << " " << report.group << " " << report.delay_s;
-      EXPECT_LT(std::abs(report.determined() ? report.delay_s : 0.0), 0.01)
-          << aircraft << " " << report.group;
+      EXPECT_LT(std::abs(report.determined() ? report.delay_s : 0.0), 0.01) << aircraft << " " << report.group;
     }
   }
 }

@@ -89,7 +89,8 @@ TEST(VaneDelays, AreNotDeterminedWithoutManoeuvres) {
                  silent);
   for (const auto& [name, report] : vanes_of(with_late_vanes(level, 0.06, 0.06))) {
     EXPECT_FALSE(report.applied()) << name;
-    EXPECT_FALSE(report.determined()) << name << " " << report.delay_s << " +- " << report.sigma_s << recording::says(report);
+    EXPECT_FALSE(report.determined()) << name << " " << report.delay_s << " +- " << report.sigma_s
+                                      << recording::says(report);
   }
 }
 

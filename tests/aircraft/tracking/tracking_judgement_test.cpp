@@ -1,4 +1,3 @@
-#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/aircraft/tracking/tracking_judgement.hpp"
 
 #include <fmt/format.h>
@@ -15,6 +14,7 @@
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
 #include "veridyn/aircraft/track_flight.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/numerics/random.hpp"
 #include "veridyn/numerics/threads/parallel.hpp"
 
@@ -73,6 +73,12 @@ const Evidence* row_named(const estimation::Estimate& estimate, const std::strin
   return nullptr;
 }
 
+const Evidence* row_of(const estimation::Estimate& estimate, estimation::Check check, const std::string& about) {
+  for (const Evidence& row : estimate.evidence)
+    if (row.check == check && row.about == about) return &row;
+  return nullptr;
+}
+
 TEST(TrackingJudgement, GradesACleanFlightAndSaysWhatItRestsOn) {
   Progress silent;
   const FlightStudy study = campaign_flight("unatrap", 1, 150.0);
@@ -81,12 +87,12 @@ TEST(TrackingJudgement, GradesACleanFlightAndSaysWhatItRestsOn) {
   EXPECT_NE(estimate.judgement.parameters.grade, Grade::kNo);
   EXPECT_EQ(estimate.judgement.prediction.grade, Grade::kYes);
   // Rows of the recording, those of identify, and rows of every coefficient.
-  EXPECT_NE(row_named(estimate, "deflections", "controls"), nullptr);
-  EXPECT_TRUE(row_named(estimate, "plausibility of Cm_q", "Cm_q")->passed());
+  EXPECT_NE(row_of(estimate, estimation::Check::kDeflections, "controls"), nullptr);
+  EXPECT_TRUE(row_of(estimate, estimation::Check::kPlausibleSign, "Cm_q")->passed());
   for (const char* name : {"CL", "CD", "CY", "Cl", "Cm", "Cn"}) {
     const Evidence* row = row_named(estimate, "residual beyond the sensors", name);
     ASSERT_NE(row, nullptr) << name;
-    EXPECT_TRUE(row->passed()) << name << ": " << row->text;
+    EXPECT_TRUE(row->passed()) << name << ": " << says(*row);
   }
 }
 
@@ -108,7 +114,7 @@ TEST(TrackingJudgement, SaysThatALiveRecordingWasNotChecked) {
   (void)live.advance(study.mapped, study, false, silent);
   const estimation::Estimate before = live.estimate();
   EXPECT_EQ(before.judgement.data.grade, Grade::kNotJudged);
-  EXPECT_NE(row_named(before, "recording", ""), nullptr);
+  EXPECT_NE(row_of(before, estimation::Check::kUncheckedRecording, ""), nullptr);
   live.check_recording(study.mapped, study, {}, silent);
   EXPECT_EQ(live.estimate().judgement.data.grade, Grade::kYes);
 }

@@ -33,8 +33,7 @@ estimation::Estimate judged_estimate(const FlightTracker& tracker, std::span<con
   estimation::Estimate estimate = tracker.estimate();
   std::vector<Evidence> of_flight(recording.begin(), recording.end());
   if (of_flight.empty())
-    of_flight.push_back(
-        estimation::row_of(estimation::Check::kUncheckedRecording, "", estimation::Outcome::kMissing));
+    of_flight.push_back(estimation::row_of(estimation::Check::kUncheckedRecording, "", estimation::Outcome::kMissing));
   estimate.evidence = of_flight;
   std::vector<Judgement> parts;
   std::size_t at = 0;

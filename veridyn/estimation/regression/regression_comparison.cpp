@@ -39,7 +39,8 @@ Distance distance(const RegressionEstimate& scale, const Eigen::VectorXd& a, con
 }
 
 Evidence residual_autocorrelation(const RegressionEstimate& estimate) {
-  Evidence check{.check = Check::kResidualAutocorrelation, .name = "residual autocorrelation", .scale = "Durbin-Watson"};
+  Evidence check{
+      .check = Check::kResidualAutocorrelation, .name = "residual autocorrelation", .scale = "Durbin-Watson"};
   check.value = estimate.whiteness.durbin_watson;
   check.limit = 2.0;
   check.outcome = passed_or(estimate.whiteness.white(), Outcome::kCare);
@@ -77,7 +78,8 @@ Evidence error_scale(const RegressionEstimate& gtls, const Eigen::VectorXd& resi
 Evidence ols_agreement(const RegressionEstimate& ols, const RegressionEstimate& candidate) {
   const std::string_view name = to_string(candidate.method);
   const Distance gap = distance(candidate, candidate.theta, ols.theta);
-  Evidence check{.check = Check::kOlsAgreement, .name = "agreement of OLS",
+  Evidence check{.check = Check::kOlsAgreement,
+                 .name = "agreement of OLS",
                  .outcome = passed_or(gap.sigmas <= kSensitivityLimit, Outcome::kCare),
                  .value = gap.sigmas,
                  .limit = kSensitivityLimit,
@@ -108,7 +110,8 @@ OtherReading read_otherwise(const internal::RegressionAnalysis& analysis, const 
       out.too_large ? raised : with_smaller_regressor_errors(analysis.triangle(), W, analysis.rows()));
   out.moved = out.theta ? distance(candidate, candidate.theta, *out.theta) : Distance{kInfinity, ""};
   const Distance& moved = out.moved;
-  out.check = {.check = Check::kErrorRatioSensitivity, .name = "sensitivity to the error ratio",
+  out.check = {.check = Check::kErrorRatioSensitivity,
+               .name = "sensitivity to the error ratio",
                .outcome = passed_or(moved.sigmas <= kSensitivityLimit, Outcome::kCare),
                .value = moved.sigmas,
                .limit = kSensitivityLimit,
@@ -158,7 +161,8 @@ RegressionComparison compare_with_exact_regressors(RegressionComparison result, 
 }  // namespace
 
 Evidence collinearity(const RegressionEstimate& estimate) {
-  Evidence check{.check = Check::kCollinearity, .name = "collinearity",
+  Evidence check{.check = Check::kCollinearity,
+                 .name = "collinearity",
                  .value = estimate.condition_number,
                  .limit = kConditionLimit,
                  .scale = "condition number",

@@ -172,10 +172,10 @@ TEST(CoefficientEvidence, IsAboutItsCoefficient) {
     EXPECT_EQ(row.about, "CL") << name_of(row);
     made.push_back(row.check);
   }
-  EXPECT_THAT(made, ::testing::UnorderedElementsAre(Check::kMethodChoice, Check::kUnmodelledCoefficient,
-                                                    Check::kCoefficientHoldOut, Check::kHoldOutBands,
-                                                    Check::kHoldOutAgainstStart, Check::kPartsOfFlight,
-                                                    Check::kCollinearity));
+  EXPECT_THAT(
+      made, ::testing::UnorderedElementsAre(Check::kMethodChoice, Check::kUnmodelledCoefficient,
+                                            Check::kCoefficientHoldOut, Check::kHoldOutBands,
+                                            Check::kHoldOutAgainstStart, Check::kPartsOfFlight, Check::kCollinearity));
 }
 
 estimation::Parameter parameter(std::string name, double value, double sigma) {

@@ -113,7 +113,8 @@ TEST(RecordingEvidence, NamesWhatTheClocksShow) {
   };
   const auto gyro = rows_with({"attitude", "gyro", -0.1, 0.005, 0.9, recording::DelayFinding::kApplied});
   EXPECT_NE(find(gyro, "gyro", Outcome::kCare), nullptr) << texts(gyro);
-  const auto elevator = rows_with({"elevator", "angular acceleration", -0.15, 0.0, 0.9, recording::DelayFinding::kBeforeCause});
+  const auto elevator =
+      rows_with({"elevator", "angular acceleration", -0.15, 0.0, 0.9, recording::DelayFinding::kBeforeCause});
   EXPECT_NE(find(elevator, "elevator", Outcome::kCare), nullptr) << texts(elevator);
   const auto late = rows_with({"gps", "specific force", 0.2, 0.01, 0.9, recording::DelayFinding::kApplied});
   EXPECT_EQ(find(late, "gps", Outcome::kCare), nullptr) << texts(late);
@@ -239,8 +240,7 @@ TEST(RecordingEvidence, ARefusedSensorMakesNoOtherRowWorse) {
   for (SensorReport& sensor : reconstruction.sensors)
     if (sensor.channel == "pitch")
       sensor.innovations.rejected = static_cast<std::size_t>(0.3 * static_cast<double>(sensor.innovations.count));
-  const auto rows =
-      recording_evidence(flown().measured, reconstruction, reference_options(), segments, gyro_late).rows;
+  const auto rows = recording_evidence(flown().measured, reconstruction, reference_options(), segments, gyro_late).rows;
   EXPECT_EQ(find(rows, Check::kReconstructionAgreement, "pitch")->outcome, Outcome::kFailed);
   EXPECT_EQ(find(rows, Check::kGyroDelay)->outcome, Outcome::kCare);
   EXPECT_EQ(find(rows, Check::kFlightLength)->outcome, Outcome::kCare);

@@ -1,4 +1,3 @@
-#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/aircraft/identification/output_error/chosen_output_error.hpp"
 
 #include <fmt/format.h>
@@ -10,6 +9,7 @@
 #include "tests/aircraft/rescaled_subject.hpp"
 #include "veridyn/aircraft/aircraft_study.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 
 namespace veridyn::aircraft {
 namespace {

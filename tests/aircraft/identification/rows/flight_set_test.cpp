@@ -26,7 +26,8 @@ CoefficientResult cm_of_set(const Subject& subject, std::span<const PreparedFlig
 }
 
 estimation::Evidence scatter_row_of(const CoefficientResult& result) {
-  const auto row = std::ranges::find(result.evidence, estimation::Check::kScatterBetweenFlights, &estimation::Evidence::check);
+  const auto row =
+      std::ranges::find(result.evidence, estimation::Check::kScatterBetweenFlights, &estimation::Evidence::check);
   return row == result.evidence.end() ? estimation::Evidence{} : *row;
 }
 
@@ -103,7 +104,8 @@ TEST(FlightSet, NamesWhatGivesNothing) {
   std::vector<PreparedFlight> flights = pitching_set(subject, 3, 0.0, 5);
   for (PreparedFlight& flight : flights) {
     flight.aligned.recording.add(make_channel("gyro_x", "rad/s", make_time_base({5.0, 105.0}), {0.0, 0.0}));
-    flight.recording_evidence = {estimation::row_of(estimation::Check::kGyroDelay, "gyro", estimation::Outcome::kPassed)};
+    flight.recording_evidence = {
+        estimation::row_of(estimation::Check::kGyroDelay, "gyro", estimation::Outcome::kPassed)};
   }
   flights[1].reconstruction.contradiction.emplace();
   flights[1].reconstruction.contradiction->statement = "vel_down contradicts the accelerometer";

@@ -101,8 +101,8 @@ double doubt_of(const std::optional<Determined>& measured, double nominal, doubl
   return std::hypot(weight * (measured->value - nominal), std::sqrt(weight * variance));
 }
 
-CheckedFlight air_data_evidence(const Recording& recording, const Reconstruction& reconstruction,
-                                bool airspeed_is_true, const Segments& segments) {
+CheckedFlight air_data_evidence(const Recording& recording, const Reconstruction& reconstruction, bool airspeed_is_true,
+                                const Segments& segments) {
   CheckedFlight found;
   const Channel* density = reconstruction.smoothed.find("air_density");
   if (density == nullptr) return found;

@@ -13,11 +13,11 @@ namespace veridyn::aircraft {
 /// The place of a coefficient among the groups of an analysis.
 [[nodiscard]] constexpr std::size_t place_of(Coefficient c) { return static_cast<std::size_t>(c); }
 /// What rests on the alpha vane, and on what moves the aircraft longitudinally.
-inline constexpr estimation::Groups kByAlpha = estimation::Groups::of(
-    {place_of(Coefficient::kCL), place_of(Coefficient::kCD), place_of(Coefficient::kCm)});
+inline constexpr estimation::Groups kByAlpha =
+    estimation::Groups::of({place_of(Coefficient::kCL), place_of(Coefficient::kCD), place_of(Coefficient::kCm)});
 /// What rests on the beta vane, and on what moves the aircraft laterally.
-inline constexpr estimation::Groups kByBeta = estimation::Groups::of(
-    {place_of(Coefficient::kCY), place_of(Coefficient::kCl), place_of(Coefficient::kCn)});
+inline constexpr estimation::Groups kByBeta =
+    estimation::Groups::of({place_of(Coefficient::kCY), place_of(Coefficient::kCl), place_of(Coefficient::kCn)});
 /// Nothing.
 inline constexpr estimation::Groups kByNothing = estimation::Groups();
 

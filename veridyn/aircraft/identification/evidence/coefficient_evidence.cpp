@@ -46,8 +46,8 @@ Evidence choice_of_method(const std::string& name, const estimation::RegressionC
 
 Evidence residual_beyond_sensors(const std::string& name, const CoefficientChecks& checks, double limit) {
   const bool passed = checks.unmodelled_share <= limit;
-  Evidence row = against(Check::kUnmodelledCoefficient, name, passed_or(passed, Outcome::kFailed),
-                         checks.unmodelled_share, limit);
+  Evidence row =
+      against(Check::kUnmodelledCoefficient, name, passed_or(passed, Outcome::kFailed), checks.unmodelled_share, limit);
   // Without a ratio the errors of the regressors leave no signal to judge by.
   const bool known = checks.error_ratio > 0.0 && std::isfinite(checks.error_ratio) && std::isfinite(row.value);
   if (!passed) row.cause = known ? Cause::kMissingTerm : Cause::kNoise;
@@ -64,21 +64,22 @@ Evidence holdout(const std::string& name, const CoefficientChecks& checks, doubl
   };
   if (!checks.has_holdout) return row(Outcome::kMissing, Purpose::kPrediction, Cause::kMissing);
   const bool passed = r2 >= least_r2;
-  // A coefficient that hardly varies, such as drag in cruise: its parameters have their intervals all the same. One that
-  // misses by more than the mean does is not that.
+  // A coefficient that hardly varies, such as drag in cruise: its parameters have their intervals all the same. One
+  // that misses by more than the mean does is not that.
   if (!passed && checks.holdout_ratio < kSensorNoiseAlone && !(r2 < 0.0))
     return row(Outcome::kCare, Purpose::kPrediction, Cause::kExcitation);
   const bool weak = checks.unmodelled_share > kWeakModel;
   const Outcome outcome = !passed ? Outcome::kFailed : passed_or(!weak, Outcome::kCare);
-  return row(outcome, Purpose::kParameters | Purpose::kPrediction, passed && !weak ? Cause::kNone : Cause::kMissingTerm);
+  return row(outcome, Purpose::kParameters | Purpose::kPrediction,
+             passed && !weak ? Cause::kNone : Cause::kMissingTerm);
 }
 
 Evidence parts_of_the_flight(const std::string& name, const CoefficientChecks& checks, double level) {
   const bool known = !std::isnan(checks.contradiction_p);
   const bool passed = checks.contradiction_p >= level;
-  Evidence row = against(Check::kPartsOfFlight, name,
-                         known ? passed_or(passed, Outcome::kFailed) : Outcome::kNotVerified, checks.contradiction_p,
-                         level);
+  Evidence row =
+      against(Check::kPartsOfFlight, name, known ? passed_or(passed, Outcome::kFailed) : Outcome::kNotVerified,
+              checks.contradiction_p, level);
   row.cause = known ? passed ? Cause::kNone : Cause::kOtherSubject : Cause::kExcitation;
   return std::move(row).with("widening", std::sqrt(std::max(1.0, checks.scatter)));
 }
@@ -198,10 +199,9 @@ std::vector<Evidence> plausibility(Coefficient coefficient, std::span<const esti
     const double theory = 2.0 * kPi * aspect_ratio / (2.0 + std::sqrt(4.0 + aspect_ratio * aspect_ratio));
     const double low = theory / kLiftSlopeFactor - estimation::kBeyondChance * slope->sigma;
     const double high = theory * kLiftSlopeFactor + estimation::kBeyondChance * slope->sigma;
-    Evidence row =
-        against(Check::kPlausibleLiftSlope, slope->name,
-                passed_or(slope->value >= low && slope->value <= high, Outcome::kCare), slope->value,
-                slope->value < theory ? theory / kLiftSlopeFactor : theory * kLiftSlopeFactor);
+    Evidence row = against(Check::kPlausibleLiftSlope, slope->name,
+                           passed_or(slope->value >= low && slope->value <= high, Outcome::kCare), slope->value,
+                           slope->value < theory ? theory / kLiftSlopeFactor : theory * kLiftSlopeFactor);
     row.sigma = slope->sigma;
     if (!row.passed()) row.cause = Cause::kScale;
     rows.push_back(std::move(row).with("aspect_ratio", aspect_ratio).with("theory", theory));

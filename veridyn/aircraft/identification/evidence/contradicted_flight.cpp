@@ -36,10 +36,11 @@ std::vector<double> recorded_speed(const Recording& recording, const numerics::U
 
 /// The sensors whose rows may be the cause of dead reckoning.
 enum class Suspect { kGyro, kAttitude, kAccelerometer, kGroundVelocity };
-constexpr std::array<std::pair<std::string_view, Suspect>, 4> kSuspects{{{"gyro", Suspect::kGyro},
-                                                                         {"attitude", Suspect::kAttitude},
-                                                                         {"accelerometer", Suspect::kAccelerometer},
-                                                                         {"ground velocity", Suspect::kGroundVelocity}}};
+constexpr std::array<std::pair<std::string_view, Suspect>, 4> kSuspects{
+    {{"gyro", Suspect::kGyro},
+     {"attitude", Suspect::kAttitude},
+     {"accelerometer", Suspect::kAccelerometer},
+     {"ground velocity", Suspect::kGroundVelocity}}};
 
 std::optional<Suspect> suspect_of(const Evidence& row) {
   const auto found = std::ranges::find(kSuspects, row.about, &std::pair<std::string_view, Suspect>::first);
@@ -68,8 +69,7 @@ Segments recorded_flight(const Recording& recording, double min_airspeed_mps) {
 }
 
 Evidence contradiction_row(const Contradiction& contradiction, double limit_s, std::span<const Evidence> causes) {
-  const auto cause =
-      std::ranges::find_if(causes, [&](const Evidence& row) { return is_cause(row, contradiction); });
+  const auto cause = std::ranges::find_if(causes, [&](const Evidence& row) { return is_cause(row, contradiction); });
   const bool named = cause != causes.end();
   Evidence row =
       estimation::row_of(Check::kDeadReckoning, named ? cause->about : contradiction.channel, Outcome::kFailed);

@@ -16,6 +16,6 @@ namespace veridyn::aircraft {
 /// The row of the contradiction. `causes` are the other rows of the recording: where one of them has found the sensor
 /// that is wrong, the row is about that, else about the sensor that was refused. `limit_s`: of refusal.
 [[nodiscard]] estimation::Evidence contradiction_row(const Contradiction& contradiction, double limit_s,
-                                               std::span<const estimation::Evidence> causes);
+                                                     std::span<const estimation::Evidence> causes);
 
 }  // namespace veridyn::aircraft

@@ -34,7 +34,8 @@ struct ControlSurface {
   const char* name;
   Groups affects;
 };
-constexpr std::array<ControlSurface, 3> kControlSurfaces{{{"elevator", kByAlpha}, {"aileron", kByBeta}, {"rudder", kByBeta}}};
+constexpr std::array<ControlSurface, 3> kControlSurfaces{
+    {{"elevator", kByAlpha}, {"aileron", kByBeta}, {"rudder", kByBeta}}};
 
 const ControlSurface* surface_of(std::string_view group) {
   const auto found = std::ranges::find(kControlSurfaces, group, &ControlSurface::name);
@@ -119,8 +120,8 @@ std::vector<Evidence> together_rows(std::span<const DelayReport> delays) {
   std::vector<Evidence> rows;
   for (const DelayReport& report : delays) {
     if (report.together.empty() || report.group != report.together.front()) continue;
-    Evidence row = row_of(Check::kMoveTogether, fmt::format("{}", fmt::join(report.together, " and ")),
-                          Outcome::kNotVerified);
+    Evidence row =
+        row_of(Check::kMoveTogether, fmt::format("{}", fmt::join(report.together, " and ")), Outcome::kNotVerified);
     row.value = report.delay_s;
     row.sigma = report.sigma_s;
     row.cause = Cause::kCollinear;
@@ -184,8 +185,8 @@ std::vector<Evidence> sample_rows(const Recording& recording, const Segments& se
 Evidence innovation_row(const SensorReport& sensor, bool needs_heading) {
   const estimation::InnovationSummary& s = sensor.innovations;
   const double count = static_cast<double>(std::max<std::size_t>(1, s.count));
-  Evidence row = row_of(Check::kReconstructionAgreement, sensor.channel,
-                        static_cast<double>(s.rejected + s.recovered) / count);
+  Evidence row =
+      row_of(Check::kReconstructionAgreement, sensor.channel, static_cast<double>(s.rejected + s.recovered) / count);
   row.affects = sensor.channel == "yaw" && !needs_heading ? kByNothing : affected_by(sensor.channel);
   return row;
 }
@@ -271,9 +272,7 @@ CheckedFlight recording_evidence(const Recording& recording, const Reconstructio
   std::vector<Evidence> samples = sample_rows(recording, segments, threads), inertial;
   CheckedFlight air_data;
   const std::array<std::function<void()>, 2> checks{
-      [&] {
-        inertial = recording::inertial_evidence(recording::inertial_consistency(recording, segments.airborne));
-      },
+      [&] { inertial = recording::inertial_evidence(recording::inertial_consistency(recording, segments.airborne)); },
       [&] { air_data = air_data_evidence(recording, reconstruction, options.airspeed_is_true, segments); }};
   numerics::parallel_for(checks.size(), threads, [&](std::size_t i) { checks[i](); });
 
@@ -292,8 +291,8 @@ CheckedFlight recording_evidence(const Recording& recording, const Reconstructio
   found.add(row_of(Check::kBody, "body", Outcome::kNotVerified));
   // First of all rows, as the reason that there is no more.
   if (reconstruction.contradiction)
-    found.rows.insert(found.rows.begin(), contradiction_row(*reconstruction.contradiction,
-                                                            options.gate.dead_reckoning_s, found.rows));
+    found.rows.insert(found.rows.begin(),
+                      contradiction_row(*reconstruction.contradiction, options.gate.dead_reckoning_s, found.rows));
   const bool needs_heading = !(recording.has("alpha") && recording.has("beta") &&
                                (recording.has("airspeed") || recording.has("dynamic_pressure")));
   for (const SensorReport& sensor : reconstruction.sensors)

@@ -52,9 +52,8 @@ estimation::Evidence doubt_row(const std::string& coefficient, std::span<const P
     largest = std::max(largest, d / p.sigma);
     if (d > limit * p.sigma) named.push_back(fmt::format("{} by {:.2g}", p.name, d));
   }
-  estimation::Evidence row =
-      row_of(estimation::Check::kAirDataDoubt, coefficient,
-             estimation::passed_or(named.empty(), estimation::Outcome::kNotVerified));
+  estimation::Evidence row = row_of(estimation::Check::kAirDataDoubt, coefficient,
+                                    estimation::passed_or(named.empty(), estimation::Outcome::kNotVerified));
   row.value = largest;
   row.limit = limit;
   return std::move(row).with("parameters", fmt::format("{}", fmt::join(named, ", ")));

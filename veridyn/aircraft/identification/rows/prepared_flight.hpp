@@ -22,7 +22,8 @@ struct PreparedFlight {
   Reconstruction reconstruction = {};
   FlightSignals signals = {};
   Segments segments = {};
-  std::vector<estimation::Evidence> recording_evidence = {};  ///< does the recording agree with itself and with physics?
+  std::vector<estimation::Evidence> recording_evidence =
+      {};                                ///< does the recording agree with itself and with physics?
   std::vector<SignalDoubt> doubts = {};  ///< what these checks leave in doubt
 
   /// Whether its motion is known: of a contradicted flight there are neither signals nor excited segments.

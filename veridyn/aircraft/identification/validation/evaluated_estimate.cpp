@@ -7,8 +7,8 @@
 
 #include "veridyn/aircraft/identification/fit/coefficient_description.hpp"
 #include "veridyn/aircraft/model/estimated_subject.hpp"
-#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 
 namespace veridyn::aircraft {
 namespace {
