@@ -40,7 +40,7 @@ TEST(ContradictedFlight, IsGradedNoWithTheSensorThatIsWrongAndIdentifiesNothing)
                                     {"gyro in deg/s", "gyro"},
                                     {"attitude in degrees", "roll"},
                                     {"velocity in km/h", "ground velocity"},
-                                    {"north and east swapped", "vel_north"}}) {
+                                    {"north and east swapped", "ground velocity"}}) {
     FlightStudy faulty = study;
     fault(name).apply(faulty);
     const Identified flight = aircraft::testing::identified(faulty);
