@@ -36,7 +36,7 @@ struct InertialConsistency {
 /// to 10 % (the inverse of a number that may be anything is no gain). What is left unexplained beyond the reference's
 /// white noise may be an error of the reading, which attenuates the inverse gain by up to
 ///     a = 3 N s^2 [(X'X)^-1]_jj / n^2
-/// (errors in variables, Fuller 1987, section 1.1): a doubt of the gain, of 0.6 at most.
+/// (errors in variables, Fuller 1987, section 1.1): a doubt of the gain of the accelerometer, of 0.6 at most.
 [[nodiscard]] InertialConsistency inertial_consistency(const Recording& recording, std::span<const TimeSpan> spans);
 
 /// The rows of it: gain, bias and delays of accelerometer, velocity and gyro, and, where a wrong velocity explains a

@@ -115,7 +115,10 @@ TEST(RecordingEvidence, NamesWhatTheClocksShow) {
   EXPECT_NE(find(gyro, "gyro", Outcome::kCare), nullptr) << texts(gyro);
   const auto elevator =
       rows_with({"elevator", "angular acceleration", -0.15, 0.0, 0.9, recording::DelayFinding::kBeforeCause});
-  EXPECT_NE(find(elevator, "elevator", Outcome::kCare), nullptr) << texts(elevator);
+  EXPECT_NE(find(elevator, "elevator", Outcome::kFailed), nullptr) << texts(elevator);
+  const auto servo_lag =
+      rows_with({"elevator", "angular acceleration", -0.06, 0.0, 0.9, recording::DelayFinding::kBeforeCause});
+  EXPECT_NE(find(servo_lag, "elevator", Outcome::kCare), nullptr) << texts(servo_lag);
   const auto late = rows_with({"gps", "specific force", 0.2, 0.01, 0.9, recording::DelayFinding::kApplied});
   EXPECT_EQ(find(late, "gps", Outcome::kCare), nullptr) << texts(late);
   EXPECT_EQ(data_grade(late), Grade::kYes) << texts(late);
