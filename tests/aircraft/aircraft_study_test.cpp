@@ -11,6 +11,7 @@
 #include "tests/support/refusal.hpp"
 #include "veridyn/aircraft/track_flight.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -191,11 +192,10 @@ TEST(AircraftStudy, FindsTheTermsOfTheTrueModelAmongCandidates) {
   }
 }
 
-/// Rows of a name.
-std::vector<estimation::Evidence> rows_named(const FlightAnalysis& analysis, std::string_view name) {
+std::vector<estimation::Evidence> rows_of(const FlightAnalysis& analysis, estimation::Check check) {
   std::vector<estimation::Evidence> rows;
   for (const estimation::Evidence& row : analysis.estimate.evidence)
-    if (row.name == name) rows.push_back(row);
+    if (row.check == check) rows.push_back(row);
   return rows;
 }
 
@@ -203,9 +203,9 @@ TEST(AircraftStudy, ARightModelFliesOverTheHoldOutBetterThanMeanAndLastValue) {
   Progress silent;
   const FlightStudy study = calm_study(150.0, "");
   const FlightAnalysis analysis = identify(study, silent);
-  for (const char* name : {"flown over the hold-out", "flown against the last value"}) {
-    ASSERT_FALSE(rows_named(analysis, name).empty());
-    for (const estimation::Evidence& row : rows_named(analysis, name)) EXPECT_TRUE(row.passed()) << row.text;
+  for (const auto check : {estimation::Check::kFlownOverHoldOut, estimation::Check::kFlownAgainstLast}) {
+    ASSERT_FALSE(rows_of(analysis, check).empty());
+    for (const estimation::Evidence& row : rows_of(analysis, check)) EXPECT_TRUE(row.passed()) << says(row);
   }
   // Another aircraft's lift, flown although it does not explain the coefficient: alpha goes to where it is the weight.
   FlightStudy demanding_nothing = study;
@@ -214,11 +214,11 @@ TEST(AircraftStudy, ARightModelFliesOverTheHoldOutBetterThanMeanAndLastValue) {
   for (estimation::Parameter& p : wrong.parameters)
     if (p.name == "CL_0") p.value -= 0.3;
   const FlightAnalysis validated = validate(demanding_nothing, wrong, silent);
-  for (const char* name : {"flown over the hold-out", "flown against the last value"}) {
-    const std::vector<estimation::Evidence> rows = rows_named(validated, name);
+  for (const auto check : {estimation::Check::kFlownOverHoldOut, estimation::Check::kFlownAgainstLast}) {
+    const std::vector<estimation::Evidence> rows = rows_of(validated, check);
     const auto of_alpha = std::ranges::find(rows, "alpha", &estimation::Evidence::about);
-    ASSERT_NE(of_alpha, rows.end()) << name;
-    EXPECT_FALSE(of_alpha->passed()) << of_alpha->text;
+    ASSERT_NE(of_alpha, rows.end());
+    EXPECT_FALSE(of_alpha->passed()) << says(*of_alpha);
   }
   EXPECT_NE(validated.estimate.judgement.prediction.grade, estimation::Grade::kYes);
 }

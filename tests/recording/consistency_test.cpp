@@ -235,12 +235,13 @@ TEST(Consistency, OfNothingThereIsNothing) {
   EXPECT_TRUE(check_consistency(drive_motion(Recording{})).relations.empty());
 }
 
-TEST(UnitOfFactor, StaysWithinTheDimension) {
-  EXPECT_EQ(unit_of_factor(parse_unit("m/s"), 3.6), "km/h");
-  EXPECT_EQ(unit_of_factor(parse_unit("m/s"), 1.95), "kt");
-  EXPECT_EQ(unit_of_factor(parse_unit("rad"), 1.95), "");
-  EXPECT_EQ(unit_of_factor(parse_unit("Pa"), 0.01), "hPa");
-  EXPECT_EQ(unit_of_factor(parse_unit("km/h"), 1.0 / 3.6), "m/s");
+TEST(MistakenUnit, StaysWithinTheDimension) {
+  EXPECT_EQ(mistaken_unit(parse_unit("m/s"), 3.6), "km/h taken for m/s");
+  EXPECT_EQ(mistaken_unit(parse_unit("m/s"), 1.95), "kt taken for m/s");
+  EXPECT_EQ(mistaken_unit(parse_unit("m/s"), 1.1), "");
+  EXPECT_EQ(mistaken_unit(parse_unit("rad"), 1.95), "");
+  EXPECT_EQ(mistaken_unit(parse_unit("Pa"), 0.01), "hPa taken for Pa");
+  EXPECT_EQ(mistaken_unit(parse_unit("km/h"), 1.0 / 3.6), "m/s taken for km/h");
 }
 
 }  // namespace

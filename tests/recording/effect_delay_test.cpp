@@ -31,17 +31,17 @@ TEST(Delays, EffectOfACauseIsAsLateAsTheLagThatExplainsItBest) {
   const Progress silent;
   const DelayReport late =
       effect_delay("elevator", "angular acceleration", effect, {cause}, {{other}}, 1.0 / kLivelyRate_Hz, {}, silent);
-  EXPECT_TRUE(late.applied);
+  EXPECT_TRUE(late.applied());
   EXPECT_NEAR(late.delay_s, 0.06, 0.001);
   EXPECT_NEAR(late.correlation, 1.0, 1e-6);
   // An effect before its cause is none.
   const DelayReport early = effect_delay("elevator", "angular acceleration", cause, {later(cause, 6)}, {{other}},
                                          1.0 / kLivelyRate_Hz, {}, silent);
-  EXPECT_FALSE(early.applied);
-  EXPECT_EQ(early.text, "negative: a cause cannot follow its effect, left alone");
+  EXPECT_FALSE(early.applied());
+  EXPECT_EQ(early.finding, DelayFinding::kBeforeCause);
   const DelayReport none = effect_delay("rudder", "angular acceleration", effect, {lively(6000, "x")}, {{other}},
                                         1.0 / kLivelyRate_Hz, {}, silent, "surface");
-  EXPECT_EQ(none.text, "not determined: the surface explains too little");
+  EXPECT_EQ(none.finding, DelayFinding::kLittleExplained);
 }
 
 // Recordings without gaps take a shorter way, by running sums: one missing sample at the end changes nothing else.
@@ -57,7 +57,7 @@ TEST(Delays, OfEffectsWithAndWithoutAMissingSampleAreTheSame) {
                                {}, Progress(), "surface");
   };
   const DelayReport whole = report();
-  ASSERT_TRUE(whole.applied) << whole.text;
+  ASSERT_TRUE(whole.applied()) << says(whole);
   for (std::vector<double>* signal : {&cause, &other, &late}) signal->push_back(0.0);
   effect.push_back(std::nan(""));
   const DelayReport with_gap = report();
@@ -73,10 +73,10 @@ TEST(Delays, OfACauseThatExplainsLessThanWhatIsLeftAreInDoubt) {
   for (std::size_t k = 0; k < effect.size(); ++k) effect[k] += 1.2 * gust[k];
   const DelayReport report = effect_delay("elevator", "angular acceleration", effect, {cause}, {}, 1.0 / kLivelyRate_Hz,
                                           {}, Progress(), "surface");
-  EXPECT_FALSE(report.applied);
-  EXPECT_TRUE(report.in_doubt);
+  EXPECT_FALSE(report.applied());
+  EXPECT_TRUE(report.finding == DelayFinding::kInDoubt);
   EXPECT_NEAR(report.delay_s, 0.06, 4.0 * report.sigma_s);
-  EXPECT_THAT(report.text, HasSubstr("the surface explains less than what is left"));
+  EXPECT_THAT(says(report), HasSubstr("the surface explains less than what is left"));
 }
 
 // A pilot who reacts to what is recorded with noise: without the correction the cause makes up for it, too late. With
@@ -98,7 +98,7 @@ TEST(Delays, NoiseOfWhatTheCauseReactsToIsNotTakenForADelay) {
                         silent);
   };
   EXPECT_LT(delay(0.0).delay_s, -0.03);
-  EXPECT_EQ(delay(kNoise * kNoise).text, "not determined: the cause explains too little");
+  EXPECT_EQ(delay(kNoise * kNoise).finding, DelayFinding::kLittleExplained);
 }
 
 /// A cause whose effect is 0.06 s late, with half as much noise of the same spectrum as effect.
@@ -137,7 +137,7 @@ TEST(Delays, CausesThatMoveTogetherHaveOneThatIsRightForAllTheirEffects) {
   const DelayReport report = common_effect_delay(
       "aileron", "angular acceleration", {{roll, {{aileron}, {rudder}}, {}, {}}, {yaw, {{aileron}, {rudder}}, {}, {}}},
       1.0 / kLivelyRate_Hz, {}, Progress());
-  EXPECT_TRUE(report.applied);
+  EXPECT_TRUE(report.applied());
   EXPECT_LT(report.sigma_s, 0.01);
   EXPECT_NEAR(report.delay_s, 0.08, 1.96 * report.sigma_s);
 }
@@ -145,8 +145,8 @@ TEST(Delays, CausesThatMoveTogetherHaveOneThatIsRightForAllTheirEffects) {
 TEST(Delays, SearchStopsWhenItIsInterrupted) {
   const std::vector<double> x = lively(6000, "x");
   const DelayReport report = effect_delay("elevator", "q", x, {later(x, 6)}, {}, 1.0 / kLivelyRate_Hz, {}, Stopped());
-  EXPECT_FALSE(report.applied);
-  EXPECT_EQ(report.text, "not determined: interrupted");
+  EXPECT_FALSE(report.applied());
+  EXPECT_EQ(report.finding, DelayFinding::kInterrupted);
 }
 
 }  // namespace

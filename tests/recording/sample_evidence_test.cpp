@@ -51,9 +51,9 @@ std::vector<Evidence> after(const char* name, const std::function<double(double,
 TEST(SampleEvidence, RaisesNoAlarmOverTwoHundredCleanRecordings) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const auto rows = sample_evidence(moving(seed), kChannels, kMinute);
-    ASSERT_EQ(rows.size(), 1u) << rows.front().text;
+    ASSERT_EQ(rows.size(), 1u) << says(rows.front());
     EXPECT_TRUE(rows.front().passed());
-    EXPECT_THAT(rows.front().text, HasSubstr("none of 4 channels"));
+    EXPECT_THAT(says(rows.front()), HasSubstr("none of 4 channels"));
   }
 }
 
@@ -61,9 +61,9 @@ TEST(SampleEvidence, RaisesNoAlarmOverTwoHundredCleanRecordings) {
 void expect(const std::vector<Evidence>& rows, const char* about, Outcome outcome, const char* text) {
   ASSERT_EQ(rows.size(), 1u) << about;
   EXPECT_EQ(rows.front().about, about);
-  EXPECT_EQ(rows.front().outcome, outcome) << rows.front().text;
-  EXPECT_THAT(rows.front().text, HasSubstr(text));
-  EXPECT_FALSE(rows.front().advice.empty());
+  EXPECT_EQ(rows.front().outcome, outcome) << says(rows.front());
+  EXPECT_THAT(says(rows.front()), HasSubstr(text));
+  EXPECT_FALSE(advice_of(rows.front()).empty());
 }
 
 TEST(SampleEvidence, NamesASensorThatStandsStillWhileOthersMove) {
@@ -95,7 +95,7 @@ TEST(SampleEvidence, LeavesTheRestOfAControlToThoseWhoKnowTheVehicle) {
     return sample_evidence(recording, channels, kMinute);
   };
   EXPECT_FALSE(rows(Rest::kLongOnly).front().passed());
-  EXPECT_TRUE(rows(Rest::kNone).front().passed()) << rows(Rest::kNone).front().text;
+  EXPECT_TRUE(rows(Rest::kNone).front().passed()) << says(rows(Rest::kNone).front());
 }
 
 TEST(SampleEvidence, NamesAValueThatIsHeld) {
@@ -137,7 +137,7 @@ TEST(SampleEvidence, AHeadingThatPassesSouthHasNoSpikes) {
   Recording recording;
   recording.add(make_channel("yaw", "rad", make_time_base(std::move(t)), std::move(heading)));
   const std::vector<SampledChannel> yaw{{"yaw", "attitude"}};
-  for (const Evidence& row : sample_evidence(recording, yaw, kMinute)) EXPECT_TRUE(row.passed()) << row.text;
+  for (const Evidence& row : sample_evidence(recording, yaw, kMinute)) EXPECT_TRUE(row.passed()) << says(row);
 }
 
 // Two are an accident, vibration that comes and goes and bumps of some samples are motion.
@@ -145,7 +145,7 @@ TEST(SampleEvidence, LetsAccidentsBumpsAndVibrationPass) {
   int sample = 0;
   const auto pass = [](const std::vector<Evidence>& rows) {
     ASSERT_EQ(rows.size(), 1u);
-    EXPECT_TRUE(rows.front().passed()) << rows.front().text;
+    EXPECT_TRUE(rows.front().passed()) << says(rows.front());
   };
   pass(after("gyro", [&](double, double v) { return ++sample % 2500 == 1250 ? v + 1.0 : v; }));
   sample = 0;
@@ -164,7 +164,7 @@ TEST(SampleEvidence, LetsAllSensorsRestTogether) {
       if (channel.times()[i] < 8.0) channel.value[i] = rest;
     recording.set(std::move(channel));
   }
-  for (const Evidence& row : sample_evidence(recording, kChannels, kMinute)) EXPECT_TRUE(row.passed()) << row.text;
+  for (const Evidence& row : sample_evidence(recording, kChannels, kMinute)) EXPECT_TRUE(row.passed()) << says(row);
 }
 
 }  // namespace

@@ -11,7 +11,12 @@ namespace {
 using estimation::Outcome;
 using ::testing::HasSubstr;
 
-const SensorNames kNames{"accelerometer", "velocity and attitude", {"x", "y", "z"}, "m/s^2"};
+using estimation::Cause;
+using estimation::Check;
+
+const SensorNames kNames{"accelerometer",    "velocity and attitude",   {"x", "y", "z"},
+                         Check::kSensorGain, Check::kAccelerometerBias, 1.0,
+                         parse_unit("m/s^2")};
 
 SensorMatrix matrix(const Eigen::Matrix3d& gain) {
   SensorMatrix m;
@@ -21,40 +26,53 @@ SensorMatrix matrix(const Eigen::Matrix3d& gain) {
   return m;
 }
 
-std::string fault(const Eigen::Matrix3d& gain) { return gain_fault(matrix(gain), kNames, 0.02).value_or("none"); }
+GainFault fault(const Eigen::Matrix3d& gain) { return gain_fault(matrix(gain), kNames, 0.02).value_or(GainFault{}); }
 
-TEST(GainFault, NamesWhatIsWrong) {
+TEST(GainFault, FindsTheCause) {
   const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
-  EXPECT_EQ(fault(I), "none");
-  EXPECT_THAT(fault(I / kGravity), HasSubstr("g taken for m/s^2"));
-  EXPECT_THAT(fault(I / kDegree), HasSubstr("degrees taken for radians"));
-  EXPECT_THAT(fault(3.6 * I), HasSubstr("km/h taken for m/s"));
-  EXPECT_THAT(fault(1000.0 * I), HasSubstr("a factor of 1000"));
-  EXPECT_EQ(fault(Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal()), "the sign of y and z is reversed");
+  EXPECT_EQ(fault(I).cause, Cause::kNone);
+  for (const auto& [factor, unit] : {std::pair{1.0 / kGravity, "g taken for m/s^2"},
+                                     {1.0 / kDegree, "degrees taken for radians"},
+                                     {3.6, "km/h taken for m/s"},
+                                     {1000.0, "a factor of 1000 between units"}}) {
+    EXPECT_EQ(fault(factor * I).cause, Cause::kUnit);
+    EXPECT_EQ(fault(factor * I).unit, unit);
+    EXPECT_NEAR(fault(factor * I).factor, factor, 1e-12);
+  }
+  const GainFault signs = fault(Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal());
+  EXPECT_EQ(signs.cause, Cause::kSign);
+  EXPECT_EQ(signs.axes, "y and z");
   Eigen::Matrix3d swapped = Eigen::Matrix3d::Zero();
   swapped(0, 1) = 1.0;
   swapped(1, 0) = -1.0;
   swapped(2, 2) = 1.0;
-  EXPECT_EQ(fault(swapped), "axis x reads y, axis y reads minus x");
-  EXPECT_THAT(fault(Eigen::Vector3d(1.0, 1.1, 1.0).asDiagonal()), HasSubstr("axis y reads 1.1 +- 0.003 times"));
+  EXPECT_EQ(fault(swapped).cause, Cause::kAxis);
+  EXPECT_EQ(fault(swapped).axes, "x reads y, y reads minus x");
+  const GainFault scale = fault(Eigen::Vector3d(1.0, 1.1, 1.0).asDiagonal());
+  EXPECT_EQ(scale.cause, Cause::kScale);
+  EXPECT_EQ(scale.axes, "y");
+  EXPECT_NEAR(scale.factor, 1.1, 1e-12);
   Eigen::Matrix3d tilted = I;
   tilted(0, 2) = 0.1;
   tilted(2, 0) = -0.1;
-  EXPECT_THAT(fault(tilted), HasSubstr("5.7 deg apart"));
+  EXPECT_EQ(fault(tilted).cause, Cause::kPlace);
 }
 
-TEST(GainFault, IsNoneWithinTheErrors) {
+TEST(GainFault, IsNoneWithinTheErrorsAndOfAxesThatRest) {
   SensorMatrix m = matrix(Eigen::Vector3d(1.0, 1.2, 1.0).asDiagonal());
+  EXPECT_TRUE(gain_fault(m, kNames, 0.02).has_value());
+  m.moved[1] = false;
+  EXPECT_FALSE(gain_fault(m, kNames, 0.02).has_value());
+  m.moved[1] = true;
   m.gain_sigma(1, 1) = 0.1;
   EXPECT_FALSE(gain_fault(m, kNames, 0.02).has_value());
 }
 
 TEST(SensorMatrixEvidence, GradesByHowFarItIsOff) {
-  const SensorTolerance tolerance{.gain_care = 0.02, .gain_failed = 0.15, .bias_care = 0.1, .bias_failed = 1.0};
   const auto outcomes = [&](double gain, double bias) {
     SensorMatrix m = matrix(Eigen::Vector3d(1.0, 1.0, gain).asDiagonal());
     m.bias(2) = bias;
-    const auto rows = sensor_matrix_evidence(m, kNames, tolerance);
+    const auto rows = sensor_matrix_evidence(m, kNames);
     return std::pair(rows.at(0).outcome, rows.at(1).outcome);
   };
   EXPECT_EQ(outcomes(1.01, 0.05), std::pair(Outcome::kPassed, Outcome::kPassed));
@@ -62,9 +80,15 @@ TEST(SensorMatrixEvidence, GradesByHowFarItIsOff) {
   EXPECT_EQ(outcomes(0.5, 2.0), std::pair(Outcome::kFailed, Outcome::kFailed));
 }
 
-TEST(MistakenUnit, IsEmptyForAnOrdinaryScaleError) {
-  EXPECT_EQ(mistaken_unit(1.1), "");
-  EXPECT_EQ(mistaken_unit(1.94), "knots taken for m/s");
+TEST(SensorMatrixEvidence, SaysWhichAxesItCannotVerify) {
+  SensorMatrix m = matrix(Eigen::Vector3d(0.05, 1.0, 1.0).asDiagonal());
+  m.moved[0] = false;
+  const auto rows = sensor_matrix_evidence(m, kNames);
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows[0].outcome, Outcome::kPassed);
+  EXPECT_EQ(rows[1].outcome, Outcome::kNotVerified);
+  EXPECT_EQ(rows[1].cause, Cause::kExcitation);
+  EXPECT_THAT(says(rows[1]), HasSubstr("x of the accelerometer moved too little"));
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include "veridyn/estimation/judgement/check.hpp"
+
 namespace veridyn::recording {
 namespace {
 
@@ -13,7 +15,7 @@ DelayReport report(double delay_s, double sigma_s, double correlation = 0.9) {
           .delay_s = delay_s,
           .sigma_s = sigma_s,
           .correlation = correlation,
-          .text = correlation < 0.0 ? "opposite sign: is the channel's sign right?" : ""};
+          .finding = correlation < 0.0 ? DelayFinding::kOppositeSign : DelayFinding::kApplied};
 }
 
 TEST(TimeOrder, IsEarlyBeyondLimitAndChance) {
@@ -29,25 +31,35 @@ TEST(TimeOrder, NamesWhatIsEarlyOrOpposite) {
   const estimation::Evidence early = early_row(report(-0.05, 0.01), {});
   EXPECT_EQ(early.about, "attitude");
   EXPECT_EQ(early.outcome, estimation::Outcome::kCare);
-  EXPECT_THAT(early.text, HasSubstr("attitude shows the motion 0.05 s before gyro"));
-  EXPECT_THAT(early.advice, HasSubstr("delays.attitude = \"-50 ms\""));
-  EXPECT_THAT(early_row(report(-0.05, 0.0), {.is_control = true}).text, HasSubstr("0.05 s after its effect"));
+  EXPECT_THAT(says(early), HasSubstr("attitude shows the motion 0.05 s before gyro"));
+  EXPECT_THAT(advice_of(early), HasSubstr("delays.attitude = \"-50 ms\""));
+  EXPECT_THAT(says(early_row(report(-0.05, 0.0), {.is_control = true})), HasSubstr("0.05 s after its effect"));
   EXPECT_TRUE(is_opposite(report(0.0, 0.0, -0.9)));
   EXPECT_FALSE(is_opposite(report(0.0, 0.0)));
-  EXPECT_THAT(opposite_row(report(0.0, 0.0, -0.9)).text, HasSubstr("moves against what gyro implies"));
-  EXPECT_EQ(late_row("gyro", "attitude", 0.1, 0.03).about, "gyro");
+  EXPECT_EQ(opposite_row(report(0.0, 0.0, -0.9)).check, estimation::Check::kSignAgainstOthers);
+  EXPECT_EQ(opposite_row(report(0.0, 0.0, -0.9)).outcome, estimation::Outcome::kCare);
+}
+
+// What turns the sign of a derivative is no matter of care.
+TEST(TimeOrder, OfAControlFailsBeyondItsLimitAndChance) {
+  const TimeOrder order{.failed_s = 0.1, .is_control = true};
+  EXPECT_EQ(early_row(report(-0.22, 0.01), order).outcome, estimation::Outcome::kFailed);
+  EXPECT_EQ(early_row(report(-0.22, 0.05), order).outcome, estimation::Outcome::kCare) << "within three errors of it";
+  EXPECT_EQ(early_row(report(-0.08, 0.01), order).outcome, estimation::Outcome::kCare);
+  EXPECT_EQ(early_row(report(-0.22, 0.01), {.is_control = true}).outcome, estimation::Outcome::kCare);
+  EXPECT_NEAR(early_row(report(-0.22, 0.01), order).limit, -0.1, 1e-12);
 }
 
 TEST(TimeOrder, TellsHowToTakeOffADelayInDoubt) {
   DelayReport servo = report(0.07, 0.01, 0.7);
   EXPECT_FALSE(is_doubtful(servo, {})) << "it was taken off";
-  servo.in_doubt = true;
+  servo.finding = DelayFinding::kInDoubt;
   EXPECT_TRUE(is_doubtful(servo, {}));
   EXPECT_FALSE(is_doubtful(servo, {.early_s = 0.08}));
   const estimation::Evidence row = doubtful_row(servo, {});
   EXPECT_EQ(row.outcome, estimation::Outcome::kCare);
-  EXPECT_THAT(row.text, HasSubstr("0.070 +- 0.010 s early"));
-  EXPECT_THAT(row.advice, HasSubstr("delays.attitude = \"-70 ms\""));
+  EXPECT_THAT(says(row), HasSubstr("0.070 +- 0.010 s early"));
+  EXPECT_THAT(advice_of(row), HasSubstr("delays.attitude = \"-70 ms\""));
   servo.sigma_s = 0.03;
   EXPECT_FALSE(is_doubtful(servo, {})) << "within three standard errors";
 }

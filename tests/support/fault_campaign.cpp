@@ -37,7 +37,7 @@ std::vector<Evidence> deciding_rows(std::span<const Evidence> faulty, std::span<
     const bool on_data = row.bears_on.contains(estimation::Purpose::kData);
     if (of_recording && !on_data) continue;
     const bool same = std::ranges::any_of(clean, [&](const Evidence& e) {
-      return e.name == row.name && e.about == row.about && e.outcome >= row.outcome;
+      return e.check == row.check && e.about == row.about && e.outcome >= row.outcome;
     });
     if (same) continue;
     if (on_data && !of_recording) {
@@ -52,8 +52,10 @@ std::vector<Evidence> deciding_rows(std::span<const Evidence> faulty, std::span<
   return rows;
 }
 
-bool names_one(std::span<const std::string> words, std::string_view text) {
-  return std::ranges::any_of(words, [&](const std::string& word) { return text.find(word) != std::string_view::npos; });
+/// Whether a subject, which may be several, "aileron and rudder", or of one of several recordings, holds one of these.
+bool holds_one(std::string_view subject, std::span<const std::string> subjects) {
+  return std::ranges::any_of(subjects,
+                             [&](const std::string& one) { return subject.find(one) != std::string_view::npos; });
 }
 
 }  // namespace
@@ -98,10 +100,15 @@ void Confidence::add(std::span<const estimation::Parameter> parameters,
   }
 }
 
-Trial tried(const Outcomes& faulty, const Outcomes& clean, bool found, std::span<const std::string> words) {
+bool NamedBy::names(const Evidence& row) const {
+  return holds_one(row.about, about) || std::ranges::find(checks, row.check) != checks.end();
+}
+
+Trial tried(const Outcomes& faulty, const Outcomes& clean, bool found, const NamedBy& named_by) {
   Trial trial;
   if (faulty.refused) {
-    trial.finding = names_one(words, faulty.message) ? Finding::kNamed : Finding::kMisnamed;
+    // What is refused has no rows, but says which channel or key it is about.
+    trial.finding = holds_one(faulty.message, named_by.about) ? Finding::kNamed : Finding::kMisnamed;
     trial.data = trial.parameters = "refused";
     trial.reason = faulty.message;
     return trial;
@@ -109,7 +116,7 @@ Trial tried(const Outcomes& faulty, const Outcomes& clean, bool found, std::span
   const std::vector<std::string> wrong = new_in(faulty.confidence.wrong, clean.confidence.wrong);
   if (!wrong.empty()) {
     const bool said = std::ranges::any_of(faulty.evidence, [&](const Evidence& row) {
-      return row.outcome == Outcome::kNotVerified && names_one(words, row.about);
+      return row.outcome == Outcome::kNotVerified && named_by.names(row);
     });
     trial.finding = said ? Finding::kNotVerified : Finding::kMissed;
     trial.reason = fmt::format("{}", fmt::join(wrong, ", "));
@@ -122,8 +129,7 @@ Trial tried(const Outcomes& faulty, const Outcomes& clean, bool found, std::span
     return trial;
   }
   const std::vector<Evidence> rows = deciding_rows(faulty.evidence, clean.evidence);
-  const bool named = std::ranges::any_of(
-      rows, [&](const Evidence& row) { return names_one(words, row.about) || names_one(words, advice_of(row)); });
+  const bool named = std::ranges::any_of(rows, [&](const Evidence& row) { return named_by.names(row); });
   trial.finding = named ? Finding::kNamed : Finding::kMisnamed;
   if (!rows.empty()) trial.reason = fmt::format("{}: {}", name_of(rows.front()), says(rows.front()));
   return trial;

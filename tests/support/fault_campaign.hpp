@@ -4,9 +4,10 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-#include "veridyn/estimation/judgement/evidence.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/estimation/result/parameter.hpp"
 
 /// What becomes of one fault at a time in simulated recordings of known truth: is it caught, is it named, or does it
@@ -59,10 +60,19 @@ struct Outcomes {
   Confidence confidence = {};
 };
 
-/// What became of a fault whose rows are about one of `words`, against the same recording without it. `found`: the
+/// What names a fault: a row about one of these (sensors, channels, parameters), or of one of these checks.
+struct NamedBy {
+  std::vector<std::string> about;
+  std::vector<estimation::Check> checks = {};
+
+  NamedBy(std::vector<std::string> about_one, std::vector<estimation::Check> of_checks = {})  // NOLINT: subjects alone
+      : about(std::move(about_one)), checks(std::move(of_checks)) {}
+  [[nodiscard]] bool names(const estimation::Evidence& row) const;
+};
+
+/// What became of a fault, against the same recording without it. `found`: the
 /// program says less than of the clean recording. Grades and names are left to the caller.
-[[nodiscard]] Trial tried(const Outcomes& faulty, const Outcomes& clean, bool found,
-                          std::span<const std::string> words);
+[[nodiscard]] Trial tried(const Outcomes& faulty, const Outcomes& clean, bool found, const NamedBy& named_by);
 
 /// A line a fault, in this order: how many trials each finding had.
 [[nodiscard]] std::string confusion_table(std::span<const Trial> trials, std::span<const std::string> faults);

@@ -17,6 +17,7 @@
 #include "veridyn/aircraft/reconstruction/filter_comparison.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct_streams.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -126,8 +127,10 @@ PreparedFlight prepared(const FlightStudy& study, Progress& progress) {
     flight.segments = recorded_flight(flight.aligned.recording, study.segments.min_airspeed_mps);
   }
   progress.stage("checking the recording");
-  flight.recording_evidence = recording_evidence(flight.aligned.recording, flight.reconstruction, options,
-                                                 flight.segments, flight.delays, progress.threads());
+  CheckedFlight checked = recording_evidence(flight.aligned.recording, flight.reconstruction, options, flight.segments,
+                                             flight.delays, progress.threads());
+  flight.recording_evidence = std::move(checked.rows);
+  flight.doubts = std::move(checked.doubts);
   return flight;
 }
 
@@ -191,32 +194,13 @@ std::vector<estimation::Evidence> flown_evidence(const Validation& validation) {
   using namespace estimation;
   std::vector<Evidence> rows;
   for (const PredictedQuantity& q : validation.quantities) {
-    const bool better = q.fit.r2 >= 0.0;
     // Gusts, which the model is not given, can cost a good one its lead over the mean; they do not make it miss by
     // three times what the motion varies.
-    const Outcome outcome = better ? Outcome::kPassed : q.fit.r2 >= -10.0 ? Outcome::kCare : Outcome::kFailed;
-    rows.push_back({.name = "flown over the hold-out",
-                    .about = q.name,
-                    .outcome = outcome,
-                    .value = q.fit.r2,
-                    .limit = 0.0,
-                    .scale = "R2",
-                    .text = fmt::format(
-                        "flown for {:.0f} s at a time over the hold-out, the model misses {} by {:.2g} {}{}",
-                        validation.period_s, q.name, q.fit.mae, q.unit, better ? "" : ", which is worse than its mean"),
-                    .bears_on = Purpose::kPrediction});
-    const bool beats_last = q.fit.rmse <= q.last_value_rmse;
-    rows.push_back({.name = "flown against the last value",
-                    .about = q.name,
-                    .outcome = passed_or(beats_last, Outcome::kCare),
-                    .value = q.fit.rmse / q.last_value_rmse,
-                    .limit = 1.0,
-                    .scale = "error over that of the last value",
-                    .text = fmt::format("the model's error in {} is {:.2f} times that of who holds the value at the "
-                                        "start of each window{}",
-                                        q.name, q.fit.rmse / q.last_value_rmse,
-                                        beats_last ? "" : ": it predicts no better than that"),
-                    .bears_on = Purpose::kPrediction});
+    rows.push_back(row_of(Check::kFlownOverHoldOut, q.name, q.fit.r2)
+                       .with("period", validation.period_s)
+                       .with("error", q.fit.mae)
+                       .with("unit", q.unit));
+    rows.push_back(row_of(Check::kFlownAgainstLast, q.name, q.fit.rmse / q.last_value_rmse));
   }
   return rows;
 }
@@ -225,7 +209,7 @@ std::vector<estimation::Evidence> flown_evidence(const Validation& validation) {
 std::vector<estimation::Evidence> recording_rows(std::span<const PreparedFlight> flights) {
   std::vector<estimation::Evidence> rows;
   for (const PreparedFlight& flight : flights)
-    for (const FlightEvidence& e : flight.recording_evidence) rows.push_back(e.row);
+    rows.insert(rows.end(), flight.recording_evidence.begin(), flight.recording_evidence.end());
   return rows;
 }
 
@@ -234,7 +218,13 @@ estimation::Judgement judgement_of(const FlightAnalysis& analysis, std::span<con
   std::vector<estimation::Judgement> parts;
   for (const CoefficientResult& result : analysis.coefficients) parts.push_back(result.judgement);
   const estimation::Judgement coefficients = estimation::judge_together(parts);
-  const estimation::Judgement whole = estimation::judge(of_all);
+  // What none of them rests on spoils nothing.
+  std::vector<estimation::Evidence> rested_on(of_all.begin(), of_all.end());
+  std::erase_if(rested_on, [&](const estimation::Evidence& row) {
+    return std::ranges::none_of(analysis.coefficients,
+                                [&](const CoefficientResult& result) { return affects(row, result.coefficient); });
+  });
+  const estimation::Judgement whole = estimation::judge(rested_on);
   estimation::Judgement judgement = coefficients;
   judgement.data = whole.data;
   judgement.prediction = estimation::worse(coefficients.prediction, whole.prediction);
@@ -278,13 +268,12 @@ std::vector<estimation::Evidence> nothing_identified(std::span<const Coefficient
            result.verdict == estimation::GroupVerdict::kEffective;
   });
   if (predicts) return {};
-  return {{.name = "identified coefficients",
-           .outcome = estimation::Outcome::kMissing,
-           .value = 0.0,
-           .limit = 1.0,
-           .scale = "coefficients",
-           .text = "no coefficient was identified: there is nothing that could predict",
-           .bears_on = estimation::Purpose::kPrediction}};
+  estimation::Evidence row =
+      estimation::row_of(estimation::Check::kIdentifiedCoefficients, "", estimation::Outcome::kMissing);
+  row.value = 0.0;
+  row.limit = 1.0;
+  row.cause = estimation::Cause::kExcitation;
+  return {std::move(row)};
 }
 
 /// What estimate.json will say of an analysis that is complete but for it.

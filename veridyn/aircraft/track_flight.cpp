@@ -139,7 +139,8 @@ void TrackedFlight::judge_recording(const MappedRecording& mapped, const FlightS
                                     const Reconstruction& reconstruction, const FlightSignals& signals,
                                     std::span<const DelayReport> delays) {
   recording_evidence_ = recording_evidence(mapped.recording, reconstruction, study.reconstruct,
-                                           excited_segments(signals, study.segments), delays);
+                                           excited_segments(signals, study.segments), delays)
+                            .rows;
 }
 
 void TrackedFlight::check_recording(const MappedRecording& mapped, const FlightStudy& study,

@@ -58,7 +58,7 @@ class TrackedFlight {
   FlightTracker tracker_;
   std::optional<TrackedModel> model_;  ///< with a guarded filter
   FilterHistory filter_;
-  std::vector<FlightEvidence> recording_evidence_;
+  std::vector<estimation::Evidence> recording_evidence_;
   AirDataSource air_data_ = AirDataSource::kFilter;
   std::vector<std::string> notes_;
   double end_ = 0.0;

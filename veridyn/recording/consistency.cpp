@@ -384,7 +384,7 @@ std::vector<std::string> correction_of(const ChannelFault& fault, const ChannelN
   return lines;
 }
 
-std::string unit_of_factor(const Unit& taken, double factor, double doubt) {
+std::string mistaken_unit(const Unit& taken, double factor, double doubt) {
   constexpr double kNear = 0.03, kMostDoubt = 0.15;
   const double within = std::clamp(doubt, kNear, kMostDoubt);
   std::string nearest;
@@ -396,7 +396,7 @@ std::string unit_of_factor(const Unit& taken, double factor, double doubt) {
     least = distance;
     nearest = truly.name;
   }
-  return nearest;
+  return nearest.empty() ? nearest : fmt::format("{} taken for {}", nearest, taken.name);
 }
 
 }  // namespace veridyn::recording

@@ -101,8 +101,9 @@ struct ConsistencyOptions {
 [[nodiscard]] std::vector<std::string> correction_of(const ChannelFault& fault, const ChannelNames& names,
                                                      std::span<const ChannelOrigin> origins = {});
 
-/// The unit in which a channel is recorded if it reads `factor` times the truth in the belief that it is recorded in
-/// `taken`; empty where no unit of that dimension is within `doubt` (a share of the factor, at least 3 %).
-[[nodiscard]] std::string unit_of_factor(const Unit& taken, double factor, double doubt = 0.0);
+/// "g taken for m/s^2": the unit in which a channel is recorded if it reads `factor` times the truth in the belief that
+/// it is recorded in `taken`; empty where no unit of that dimension is within `doubt` (a share of the factor, from 3 to
+/// 15 %).
+[[nodiscard]] std::string mistaken_unit(const Unit& taken, double factor, double doubt = 0.0);
 
 }  // namespace veridyn::recording

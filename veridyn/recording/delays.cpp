@@ -1,6 +1,7 @@
 #include "veridyn/recording/delays.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -43,10 +44,55 @@ double bias_by_answers(const std::vector<DelayPair>& pairs, const numerics::Dela
 
 }  // namespace
 
-std::string text_of_small(const DelayReport& report, double least_s, const DelayOptions& options) {
-  return least_s > kDelayMatters_s && least_s > options.min_delay_s
-             ? fmt::format("not determined: {:.3f} +- {:.3f} s", report.delay_s, report.sigma_s)
-             : "too small to matter";
+DelayFinding finding_of_small(double least_s, const DelayOptions& options) {
+  return least_s > kDelayMatters_s && least_s > options.min_delay_s ? DelayFinding::kWide : DelayFinding::kSmall;
+}
+
+namespace {
+
+std::string says_of_finding(const DelayReport& report) {
+  switch (report.finding) {
+    case DelayFinding::kApplied:
+      return "applied";
+    case DelayFinding::kGiven:
+      return "given in the study";
+    case DelayFinding::kSmall:
+      return "too small to matter";
+    case DelayFinding::kBeforeCause:
+      return fmt::format("negative: a {} cannot follow its effect, left alone", report.kind);
+    case DelayFinding::kOppositeSign:
+      return "opposite sign: is the channel's sign right?";
+    case DelayFinding::kWide:
+      return fmt::format("not determined: {:.3f} +- {:.3f} s", report.delay_s, report.sigma_s);
+    case DelayFinding::kInDoubt:
+      return fmt::format("not determined: {:.3f} +- {:.3f} s fits best, but the {} explains less than what is left",
+                         report.delay_s, report.sigma_s, report.kind);
+    case DelayFinding::kLittleExplained:
+      return fmt::format("not determined: the {} explains too little", report.kind);
+    case DelayFinding::kNoneAsGood:
+      return "not determined: no delay fits as well";
+    case DelayFinding::kNoOptimum:
+      return "not determined: no clear optimum";
+    case DelayFinding::kNoPeak:
+      return fmt::format("not determined: {}", report.why);
+    case DelayFinding::kSlow:
+      return fmt::format("not determined: fewer than {:g} samples a second", kSlowestDelayed_Hz);
+    case DelayFinding::kInterrupted:
+      return "not determined: interrupted";
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string says(const DelayReport& report) {
+  std::string text = says_of_finding(report);
+  if (report.contradicted_by)
+    text += fmt::format("; by {} it would be {:.3f} +- {:.3f} s", report.contradicted_by->reference,
+                        report.contradicted_by->delay_s, report.contradicted_by->sigma_s);
+  if (!report.together.empty())
+    text += fmt::format("; one delay for {}, which move together", fmt::join(report.together, " and "));
+  return text;
 }
 
 void DelayOptions::read_keys(const StudyTable& table, const std::vector<DelayGroup>& groups) {
@@ -124,17 +170,17 @@ DelayReport shared_delay(std::string group, std::string reference, const std::ve
   const numerics::DelayEstimate found = search(expected);
   const double doubt = in_doubt ? search(doubted).delay_s - found.delay_s : 0.0;
   const double sigma = std::hypot(found.sigma_s, doubt, bias_by_answers(pairs, found));
-  DelayReport report{std::move(group), std::move(reference), found.delay_s, sigma, found.correlation, false, ""};
+  DelayReport report{std::move(group), std::move(reference), found.delay_s, sigma, found.correlation};
   const double least = std::max(options.min_delay_s, 3.0 * sigma);
   if (found.correlation < 0.0) {
-    report.text = "opposite sign: is the channel's sign right?";
+    report.finding = DelayFinding::kOppositeSign;
   } else if (!found.determined) {
-    report.text = fmt::format("not determined: {}", found.reason);
+    report.finding = DelayFinding::kNoPeak;
+    report.why = found.reason;
   } else if (std::abs(found.delay_s) < least) {
-    report.text = text_of_small(report, least, options);
+    report.finding = finding_of_small(least, options);
   } else {
-    report.applied = true;
-    report.text = "applied";
+    report.finding = DelayFinding::kApplied;
   }
   return report;
 }
@@ -157,7 +203,7 @@ bool take_off_delay(Recording& recording, const std::vector<std::string>& channe
 std::optional<DelayReport> take_off_given(Recording& recording, const DelayGroup& group, const DelayOptions& options) {
   const std::optional<double> delay = options.given_for(group.name);
   if (!delay || !take_off_delay(recording, group.channels, *delay)) return std::nullopt;
-  return DelayReport{group.name, "study", *delay, 0.0, 0.0, true, "given in the study"};
+  return DelayReport{group.name, "study", *delay, 0.0, 0.0, DelayFinding::kGiven};
 }
 
 }  // namespace veridyn::recording

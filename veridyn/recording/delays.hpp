@@ -41,6 +41,23 @@ struct OtherDelay {
   double sigma_s = 0.0;
 };
 
+/// What a comparison says of a delay.
+enum class DelayFinding {
+  kApplied,          ///< determined, and taken off
+  kGiven,            ///< by the study, and taken off
+  kSmall,            ///< determined, too small to matter
+  kBeforeCause,      ///< determined, but an effect before its cause: left alone
+  kOppositeSign,     ///< the group moves against what its reference implies; from here on it is not determined
+  kWide,             ///< within a range in which it may matter or not
+  kInDoubt,          ///< `delay_s` fits best, but more of the effect is unexplained than the cause explains
+  kLittleExplained,  ///< the cause explains too little
+  kNoneAsGood,       ///< no delay fits as well
+  kNoOptimum,        ///< no lag inside the search is best
+  kNoPeak,           ///< the cross-correlation has no peak: see `why`
+  kSlow,             ///< the group has fewer samples than kSlowestDelayed_Hz
+  kInterrupted       ///< the search was
+};
+
 /// How late a group of channels is, against what.
 struct DelayReport {
   std::string group;      ///< "attitude"
@@ -48,19 +65,22 @@ struct DelayReport {
   double delay_s = 0.0;   ///< positive: the group reports late
   double sigma_s = 0.0;
   double correlation = 0.0;
-  bool applied = false;
-  std::string text;  ///< "applied", or why not
-  /// `delay_s` fits best, but more of the effect is unexplained than the cause explains, and that may shift it: not
-  /// applied.
-  bool in_doubt = false;
+  DelayFinding finding = DelayFinding::kNoOptimum;
+  std::string_view kind = "cause";  ///< of group, in sentences: "surface"
+  std::string_view why = {};        ///< of kNoPeak, in words
   /// Groups that move together and were given one delay, this one among them; empty: it was searched alone.
   std::vector<std::string> together = {};
   /// A second comparison that determines it too, and differs by more than three standard errors of both.
   std::optional<OtherDelay> contradicted_by = {};
 
+  /// Whether it was taken off the stamps, or is to be.
+  [[nodiscard]] bool applied() const { return finding == DelayFinding::kApplied || finding == DelayFinding::kGiven; }
   /// Whether the comparison says how late the group is, be it not at all.
-  [[nodiscard]] bool determined() const { return !text.starts_with("not determined") && !text.starts_with("opposite"); }
+  [[nodiscard]] bool determined() const { return finding < DelayFinding::kOppositeSign; }
 };
+
+/// What was found, in words: "applied", or why not.
+[[nodiscard]] std::string says(const DelayReport& report);
 
 /// The longest part of a recording that is searched [s]. A delay is one number: the middle quarter of an hour of a
 /// longer recording determines it.
@@ -119,8 +139,8 @@ struct DelayPair {
   std::vector<double> doubted = {};
 };
 
-/// The delay that several pairs share, by cross-correlation (numerics::estimate_delay). `applied` says whether it is to
-/// be taken off: determined, of the right sign and larger than `min_delay_s` and three standard errors.
+/// The delay that several pairs share, by cross-correlation (numerics::estimate_delay). It is to be taken off
+/// where it is determined, of the right sign and larger than `min_delay_s` and three standard errors.
 ///
 /// `sigma_s` holds the noise, the change with what is in doubt, and the bias by a disturbance that is answered. With
 /// expected k = m + R g and observed k + g (g the disturbance, R g its answer) cross-correlation is off by
@@ -131,9 +151,9 @@ struct DelayPair {
 [[nodiscard]] DelayReport shared_delay(std::string group, std::string reference, const std::vector<DelayPair>& pairs,
                                        double rate_Hz, const DelayOptions& options);
 
-/// What to say of a delay below `least_s`, which would be taken off: of so wide a range that it holds
-/// `kDelayMatters_s` it is not known whether the delay matters.
-[[nodiscard]] std::string text_of_small(const DelayReport& report, double least_s, const DelayOptions& options);
+/// Of a delay below `least_s`, from which on it would be taken off: kSmall, or kWide where the range is so wide that it
+/// holds `kDelayMatters_s`.
+[[nodiscard]] DelayFinding finding_of_small(double least_s, const DelayOptions& options);
 
 /// What an effect is explained by: a series, and the variance of the noise in it, which would weaken its coefficient
 /// and so bias the delay of a cause that moves with it.
@@ -144,7 +164,7 @@ struct Explanatory {
 
 /// How much later `effect` answers `cause` when it is a linear function of the cause and of `others`: the lag at which
 /// least squares, corrected for the noise of both (Fuller 1987, sec. 2.2), leaves least, from -max/3 to max.
-/// `delay_s` is positive when the effect is late; `correlation` is the multiple correlation. `applied` as above; never
+/// `delay_s` is positive when the effect is late; `correlation` is the multiple correlation. Taken off as above; never
 /// for a negative delay, an effect before its cause. `sigma_s` is the jackknife's, by tenths of the recording: it needs
 /// no white residual; never less than half a step, between which a cause may jump.
 /// Stops early, undetermined, when `progress` is interrupted. `kind` is what messages call the cause.

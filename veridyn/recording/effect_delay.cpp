@@ -268,13 +268,14 @@ double share_without_causes(const std::vector<DelayedEffect>& effects, long lag)
 DelayReport common_effect_delay(std::string cause_name, std::string effect_name,
                                 const std::vector<DelayedEffect>& effects, double step_s, const DelayOptions& options,
                                 const Progress& progress, std::string_view kind) {
-  DelayReport report{std::move(cause_name), std::move(effect_name), 0.0, 0.0, 0.0, false, ""};
+  DelayReport report{std::move(cause_name), std::move(effect_name), 0.0, 0.0, 0.0};
+  report.kind = kind;
   const auto longest = static_cast<long>(options.max_delay_s / step_s);
   const long first = -longest;
   Shares shares(effects);
   for (long lag = first; lag <= longest; ++lag) {
     if (progress.interrupted()) {
-      report.text = "not determined: interrupted";
+      report.finding = DelayFinding::kInterrupted;
       return report;
     }
     shares.add(effects, lag);
@@ -286,17 +287,17 @@ DelayReport common_effect_delay(std::string cause_name, std::string effect_name,
   report.correlation = std::sqrt(std::clamp(top, 0.0, 1.0));
   const double by_cause = top - share_without_causes(effects, first + best);
   if (!(top > kLeastExplained) || !(by_cause > kLeastByCause)) {
-    report.text = fmt::format("not determined: the {} explains too little", kind);
+    report.finding = DelayFinding::kLittleExplained;
     return report;
   }
   const bool outweighed = by_cause < 1.0 - top;
   if (best == 0 && !outweighed) {
     report.delay_s = static_cast<double>(first) * step_s;
-    report.text = fmt::format("negative, as far as was searched: a {} cannot follow its effect, left alone", kind);
+    report.finding = DelayFinding::kBeforeCause;
     return report;
   }
   if (best == 0 || at + 1 == explained.size()) {
-    report.text = "not determined: no clear optimum";
+    report.finding = DelayFinding::kNoOptimum;
     return report;
   }
   report.delay_s = (static_cast<double>(first) + top_of(explained)) * step_s;
@@ -306,14 +307,11 @@ DelayReport common_effect_delay(std::string cause_name, std::string effect_name,
   if (outweighed && (by_cause < kLeastInDoubt || report.delay_s < 0.0)) {
     // A cause that reacts to what is left seems to follow its effect.
     report.delay_s = report.sigma_s = 0.0;
-    report.text = fmt::format("not determined: the {} explains too little", kind);
+    report.finding = DelayFinding::kLittleExplained;
     return report;
   }
   if (outweighed) {
-    report.in_doubt = true;
-    report.text =
-        fmt::format("not determined: {:.3f} +- {:.3f} s fits best, but the {} explains less than what is left",
-                    report.delay_s, report.sigma_s, kind);
+    report.finding = DelayFinding::kInDoubt;
     return report;
   }
   // Where causes and others move together two lags may explain as much: the top's own error does not show that.
@@ -322,14 +320,13 @@ DelayReport common_effect_delay(std::string cause_name, std::string effect_name,
   };
   const double least = std::max(options.min_delay_s, 3.0 * report.sigma_s);
   if (report.delay_s < -least) {
-    report.text = fmt::format("negative: a {} cannot follow its effect, left alone", kind);
+    report.finding = DelayFinding::kBeforeCause;
   } else if (report.delay_s < least) {
-    report.text = text_of_small(report, least, options);
+    report.finding = finding_of_small(least, options);
   } else if (gain(explained) < kBetterThanNone * jackknife_sigma(shares, gain)) {
-    report.text = "not determined: no delay fits as well";
+    report.finding = DelayFinding::kNoneAsGood;
   } else {
-    report.applied = true;
-    report.text = "applied";
+    report.finding = DelayFinding::kApplied;
   }
   return report;
 }

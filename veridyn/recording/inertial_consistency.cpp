@@ -9,6 +9,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/estimation/regression/regression.hpp"
 #include "veridyn/numerics/rotation.hpp"
 #include "veridyn/recording/grid_signals.hpp"
@@ -16,7 +17,10 @@
 namespace veridyn::recording {
 namespace {
 
+using estimation::Cause;
+using estimation::Check;
 using estimation::Evidence;
+using estimation::Outcome;
 using estimation::RegressionData;
 using Vector3 = numerics::Vector3<double>;
 using Matrix3 = numerics::Matrix3<double>;
@@ -33,8 +37,16 @@ constexpr double kSteepest = 60.0 * kDegree;
 
 /// Unknowns: nine elements of the inverse gain, row by row, then three offsets.
 constexpr Eigen::Index kUnknowns = 12;
-/// Delays that may be unknown too: of the sensor and of what it is compared with.
-constexpr Eigen::Index kDelays = 2;
+/// Delays that may be unknown too: of the specific force, of north and east, and of down.
+constexpr Eigen::Index kDelays = 3;
+constexpr Eigen::Index kAllUnknowns = kUnknowns + kDelays;
+/// Standard error of an inverse gain, as a share of it, beyond which its axis did not move enough.
+constexpr double kUndetermined = 0.1;
+/// Share of the reference's signal that is neither explained nor noise of it, from which on sensor and reference
+/// contradict each other whatever moved.
+constexpr double kContradicted = 0.5;
+/// The largest attenuation that counts as a doubt of a gain: what leaves more unexplained is no noise of a reading.
+constexpr double kMostAttenuated = 0.6;
 
 /// Accelerometer, gyro and attitude on one grid.
 struct InertialSeries {
@@ -115,10 +127,19 @@ Eigen::Matrix<double, 3, kUnknowns> regressors(const Matrix3& T, const Vector3& 
   return X;
 }
 
+/// A sensor's gain and bias with the delays that were found with them.
+struct Solved {
+  SensorMatrix matrix;
+  Eigen::Vector3d delay = Eigen::Vector3d::Zero(), delay_sigma = Eigen::Vector3d::Zero();
+};
+
 /// Rows of three axes as they come.
 class Equations {
  public:
   using Delays = Eigen::Matrix<double, 3, kDelays>;
+
+  /// @param reference_noise  variance of the white noise in what the sensor is compared with, mean of the axes
+  explicit Equations(double reference_noise) : reference_noise_(reference_noise) {}
 
   void add(const Eigen::Matrix<double, 3, kUnknowns>& X, const Vector3& z, const Delays& delays = Delays::Zero()) {
     if (!X.allFinite() || !z.allFinite() || !delays.allFinite()) return;
@@ -126,20 +147,42 @@ class Equations {
     row.X << X, delays;
     rows_.push_back(row);
   }
-  [[nodiscard]] std::optional<SensorMatrix> solve() const;
-  /// The first delay with its standard error, all unknowns estimated together.
-  [[nodiscard]] std::optional<std::pair<double, double>> delay() const;
+  /// @param delays  whether they are unknown too
+  [[nodiscard]] std::optional<Solved> solve(bool delays) const;
 
  private:
   struct Row {
-    Eigen::Matrix<double, 3, kUnknowns + kDelays> X;
+    Eigen::Matrix<double, 3, kAllUnknowns> X;
     Vector3 z;
   };
-  [[nodiscard]] RegressionData data(Eigen::Index unknowns) const;
-  [[nodiscard]] static std::optional<estimation::RegressionEstimate> least_squares(const RegressionData& data);
+  using Moved = std::array<bool, 3>;
+  /// All unknowns in their order, and how well the gain of each axis is known.
+  struct Estimate {
+    bool known = false;
+    Eigen::VectorXd theta = Eigen::VectorXd::Zero(kAllUnknowns);
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(kAllUnknowns, kAllUnknowns);
+    Vector3 relative_sigma = Vector3::Zero();
+    Vector3 attenuation = Vector3::Zero();
+    double residual_rms = 0.0;
+    bool contradicted = false;  ///< see kContradicted
+  };
+  /// With the gain of an axis that did not move taken as 1.
+  [[nodiscard]] RegressionData data(const Moved& moved, bool delays) const;
+  [[nodiscard]] Estimate estimate(const Moved& moved, bool delays) const;
+  [[nodiscard]] double power(std::size_t axis) const;
+  [[nodiscard]] double signal_rms() const;
 
+  double reference_noise_;
   std::vector<Row> rows_;
 };
+
+/// Places of the unknowns that are estimated.
+std::vector<Eigen::Index> unknowns(const std::array<bool, 3>& moved, bool delays) {
+  std::vector<Eigen::Index> places;
+  for (Eigen::Index k = 0; k < (delays ? kAllUnknowns : kUnknowns); ++k)
+    if (k >= 9 || moved[k % 3]) places.push_back(k);
+  return places;
+}
 
 /// Gain and bias from the inverse gain N and offset c (truth = N reading + c): reading = G truth - G c, with
 /// dG = -G dN G.
@@ -168,57 +211,115 @@ SensorMatrix inverted(const Eigen::VectorXd& theta, const Eigen::MatrixXd& covar
   return m;
 }
 
-RegressionData Equations::data(Eigen::Index unknowns) const {
+RegressionData Equations::data(const Moved& moved, bool delays) const {
+  const std::vector<Eigen::Index> places = unknowns(moved, delays);
   const auto n = signed_index(rows_.size());
   RegressionData data;
-  data.regressors.resize(3 * n, unknowns);
+  data.regressors.resize(3 * n, signed_index(places.size()));
   data.regressand.resize(3 * n);
   data.segment.resize(3 * rows_.size());
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     for (Eigen::Index k = 0; k < n; ++k) {
-      data.regressors.row(axis * n + k) = rows_[k].X.row(axis).head(unknowns);
-      data.regressand(axis * n + k) = rows_[k].z(axis);
+      const Row& row = rows_[k];
+      data.regressors.row(axis * n + k) = row.X.row(axis)(places);
+      double known = 0.0;
+      for (Eigen::Index j = 0; j < 3; ++j)
+        if (!moved[j]) known += row.X(axis, 4 * j);
+      data.regressand(axis * n + k) = row.z(axis) - known;
       data.segment[axis * n + k] = static_cast<int>(axis);
     }
   }
-  for (Eigen::Index j = 0; j < unknowns; ++j) data.parameter_names.push_back(fmt::format("n{}", j));
+  for (const Eigen::Index k : places) data.parameter_names.push_back(fmt::format("n{}", k));
   return data;
 }
 
-std::optional<estimation::RegressionEstimate> Equations::least_squares(const RegressionData& data) {
+/// Of the reading of an axis about its mean.
+double Equations::power(std::size_t axis) const {
+  Vector3 sum = Vector3::Zero(), squares = Vector3::Zero();
+  for (const Row& row : rows_) {
+    const Vector3 x = row.X.col(signed_index(4 * axis));
+    sum += x;
+    squares += x.cwiseProduct(x);
+  }
+  return (squares - sum.cwiseProduct(sum) / static_cast<double>(rows_.size())).sum();
+}
+
+double Equations::signal_rms() const {
+  const auto n = static_cast<double>(rows_.size());
+  Vector3 sum = Vector3::Zero(), squares = Vector3::Zero();
+  for (const Row& row : rows_) {
+    sum += row.z;
+    squares += row.z.cwiseProduct(row.z);
+  }
+  return std::sqrt((squares - sum.cwiseProduct(sum) / n).sum() / (3.0 * n));
+}
+
+Equations::Estimate Equations::estimate(const Moved& moved, bool delays) const {
   estimation::RegressionOptions options;
   options.max_lag = 20;
-  estimation::RegressionEstimate estimate = estimation::estimate(data, estimation::Method::kOls, options);
-  if (!estimate.usable() || !estimate.covariance.allFinite()) return std::nullopt;
-  return estimate;
-}
-
-std::optional<std::pair<double, double>> Equations::delay() const {
-  if (rows_.size() < kFewestWindows) return std::nullopt;
-  const auto estimate = least_squares(data(kUnknowns + kDelays));
-  if (!estimate) return std::nullopt;
-  return std::pair{estimate->theta(kUnknowns), std::sqrt(estimate->covariance(kUnknowns, kUnknowns))};
-}
-
-std::optional<SensorMatrix> Equations::solve() const {
-  const auto n = signed_index(rows_.size());
-  if (rows_.size() < kFewestWindows) return std::nullopt;
-  const RegressionData data = this->data(kUnknowns);
-  const auto estimated = least_squares(data);
-  if (!estimated) return std::nullopt;
-  const estimation::RegressionEstimate& estimate = *estimated;
-  SensorMatrix m = inverted(estimate.theta, estimate.covariance);
-  if (!m.gain.allFinite()) return std::nullopt;
-  const Eigen::VectorXd residual = data.regressand - data.regressors * estimate.theta;
-  m.residual_rms = std::sqrt(residual.squaredNorm() / static_cast<double>(3 * n));
-  double power = 0.0;
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const auto z = data.regressand.segment(axis * n, n);
-    power += (z.array() - z.mean()).square().sum();
+  const RegressionData data = this->data(moved, delays);
+  const estimation::RegressionEstimate found = estimation::estimate(data, estimation::Method::kOls, options);
+  Estimate all{.known = found.usable() && found.covariance.allFinite()};
+  for (Eigen::Index j = 0; j < 3; ++j)
+    if (!moved[j]) all.theta(4 * j) = 1.0;
+  if (!all.known) return all;
+  const std::vector<Eigen::Index> places = unknowns(moved, delays);
+  all.theta(places) = found.theta;
+  all.covariance(places, places) = found.covariance;
+  const auto n = static_cast<double>(rows_.size());
+  all.residual_rms = std::sqrt((data.regressand - data.regressors * found.theta).squaredNorm() / (3.0 * n));
+  // What the noise of the reference leaves unexplained, laid to the reading of one axis.
+  const double excess = std::max(0.0, 1.0 - reference_noise_ / (all.residual_rms * all.residual_rms));
+  all.contradicted = excess * std::pow(all.residual_rms / signal_rms(), 2.0) > kContradicted;
+  for (std::size_t a = 0; a < places.size(); ++a) {
+    const Eigen::Index k = places[a], j = k % 3;
+    if (k != 4 * j || k >= 9) continue;
+    const double size = std::hypot(all.theta(j), all.theta(3 + j), all.theta(6 + j));
+    all.relative_sigma(j) = std::sqrt(all.covariance(k, k)) / size;
+    if (all.contradicted) continue;
+    const double white = found.covariance_white(signed_index(a), signed_index(a));
+    all.attenuation(j) = std::min(kMostAttenuated, 3.0 * n * excess * white / (size * size));
   }
-  m.signal_rms = std::sqrt(power / static_cast<double>(3 * n));
-  m.rows = n;
-  return m;
+  return all;
+}
+
+std::optional<Solved> Equations::solve(bool delays) const {
+  if (rows_.size() < kFewestWindows) return std::nullopt;
+  Moved moved{true, true, true};
+  Estimate found = estimate(moved, delays);
+  // One axis after the other: what one that rests leaves to the others is then theirs.
+  for (int step = 0; step < 3; ++step) {
+    Vector3 rest = found.relative_sigma / kUndetermined;
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      if (!found.known) rest(j) = 1.0 + 1.0 / (1e-12 + power(j));
+      if (!moved[j]) rest(j) = 0.0;
+    }
+    Eigen::Index least = 0;
+    if (rest.maxCoeff(&least) <= 1.0 || found.contradicted) break;
+    moved[least] = false;
+    found = estimate(moved, delays);
+  }
+  if (!found.known) return std::nullopt;
+  Solved solved{.matrix = inverted(found.theta.head(kUnknowns), found.covariance.topLeftCorner(kUnknowns, kUnknowns)),
+                .delay = found.theta.tail<kDelays>(),
+                .delay_sigma = found.covariance.diagonal().tail<kDelays>().cwiseSqrt()};
+  SensorMatrix& m = solved.matrix;
+  if (!m.gain.allFinite()) return std::nullopt;
+  m.moved = moved;
+  for (Eigen::Index j = 0; j < 3; ++j)
+    m.gain_sigma(j, j) =
+        std::hypot(m.gain_sigma(j, j), found.attenuation(j) * m.gain(j, j) / estimation::kBeyondChance);
+  m.residual_rms = found.residual_rms;
+  m.signal_rms = signal_rms();
+  m.rows = signed_index(rows_.size());
+  return solved;
+}
+
+/// Variance that the white noise of three channels gives the mean rate of change over a window, mean of the three.
+double change_noise(std::initializer_list<const Channel*> channels, double length_s) {
+  double variance = 0.0;
+  for (const Channel* channel : channels) variance += 2.0 * std::pow(noise_floor(*channel) / length_s, 2.0) / 3.0;
+  return variance;
 }
 
 Matrix3 ned_from_body(const InertialSeries& s, std::size_t k) {
@@ -254,44 +355,73 @@ Equations::Delays delays_over(const InertialSeries& s, const Window& window) {
   for (std::size_t k = first; k < last; ++k) turning += h * (ned_from_body(s, k) * s.w(k).cross(s.f(k)));
   const Vector3 change = force_at(last) - force_at(first);
   const double T = window.end - window.begin;
-  Equations::Delays delays;
+  Equations::Delays delays = Equations::Delays::Zero();
   delays.col(0) = (change - turning) / T;
-  delays.col(1) = -change / T;
+  delays.col(1).head<2>() = -change.head<2>() / T;
+  delays(2, 2) = -change(2) / T;
   return delays;
 }
 
-/// What only the velocity says: all but `gyro`.
+/// What only the velocity says, all but `gyro`, with the velocity taken as `late_s` late.
 InertialConsistency compare_velocity(const Recording& recording, const InertialSeries& s,
-                                     std::span<const TimeSpan> spans) {
+                                     std::span<const TimeSpan> spans, double late_s) {
   InertialConsistency out;
   const Channel& north = recording.at("vel_north");
   const Channel& east = recording.at("vel_east");
   const Channel& down = recording.at("vel_down");
   if (east.size() != north.size() || down.size() != north.size()) return out;
+  std::vector<double> stamps(north.times().begin(), north.times().end());
+  for (double& t : stamps) t -= late_s;
   const Vector3 gravity(0.0, 0.0, kGravity);
-  Equations by_force, by_velocity;
-  for (const Window& window : windows(north.times(), spans, kVelocityWindow_s, kVelocityHop_s)) {
+  Equations by_force(change_noise({&north, &east, &down}, kVelocityWindow_s)), by_velocity(kInfinity);
+  for (const Window& window : windows(stamps, spans, kVelocityWindow_s, kVelocityHop_s)) {
     const auto v = [&](std::size_t i) { return Vector3(north.value[i], east.value[i], down.value[i]); };
     const Vector3 acceleration = (v(window.last) - v(window.first)) / (window.end - window.begin);
     const auto X = mean_over(window, s.grid, [&](std::size_t k) { return regressors(ned_from_body(s, k), s.f(k)); });
-    by_force.add(X, acceleration - gravity, delays_over(s, window));
+    const Equations::Delays delays = delays_over(s, window);
+    by_force.add(X, acceleration - gravity, delays);
     // Columns of the unit gain: what the accelerometer says as it is.
     const Vector3 said = X.col(0) + X.col(4) + X.col(8) + gravity;
-    by_velocity.add(regressors(Matrix3::Identity(), acceleration), said);
+    by_velocity.add(regressors(Matrix3::Identity(), acceleration), said, -delays);
   }
-  out.accelerometer = by_force.solve();
-  if (const auto delay = by_force.delay()) {
-    out.accelerometer_delay = delay->first;
-    out.accelerometer_delay_sigma = delay->second;
+  if (const std::optional<Solved> force = by_force.solve(true)) {
+    out.accelerometer = force->matrix;
+    out.accelerometer_delay = force->delay(0);
+    out.accelerometer_delay_sigma = force->delay_sigma(0);
+    out.velocity_delay = late_s + force->delay(1);
+    out.velocity_delay_sigma = force->delay_sigma(1);
+    out.vertical_delay = late_s + force->delay(2);
+    out.vertical_delay_sigma = force->delay_sigma(2);
   }
-  out.velocity = by_velocity.solve();
+  if (std::optional<Solved> velocity = by_velocity.solve(true)) out.velocity = velocity->matrix;
+  return out;
+}
+
+/// The same with the velocity shifted by the delay that is found, which is linear only where it is small.
+InertialConsistency compare_velocity(const Recording& recording, const InertialSeries& s,
+                                     std::span<const TimeSpan> spans) {
+  constexpr int kMostSteps = 4;
+  constexpr double kSmall_s = 0.03, kLargest_s = 2.0;
+  InertialConsistency out = compare_velocity(recording, s, spans, 0.0);
+  double late_s = 0.0;
+  for (int step = 0; step < kMostSteps && out.accelerometer; ++step) {
+    const double more = out.velocity_delay - late_s;
+    if (std::abs(more) < std::max(kSmall_s, estimation::kBeyondChance * out.velocity_delay_sigma)) break;
+    late_s += more;
+    if (!(std::abs(late_s) < kLargest_s)) break;
+    InertialConsistency shifted = compare_velocity(recording, s, spans, late_s);
+    if (!shifted.accelerometer || !(shifted.accelerometer->unexplained() < out.accelerometer->unexplained())) break;
+    out = std::move(shifted);
+  }
   return out;
 }
 
 std::optional<SensorMatrix> compare_rates(const Recording& recording, const InertialSeries& s,
                                           std::span<const TimeSpan> spans) {
   const std::vector<double> stamps(recording.at("roll").times().begin(), recording.at("roll").times().end());
-  Equations equations;
+  // An attitude's errors are not white (it is an estimate itself), and a gyro's noise is small over a window: all that
+  // is left unexplained is taken for the attitude's.
+  Equations equations(kInfinity);
   for (const Window& window : windows(stamps, spans, kAttitudeWindow_s, kAttitudeHop_s)) {
     const auto index = [&](double t) {
       return static_cast<std::size_t>(
@@ -309,24 +439,23 @@ std::optional<SensorMatrix> compare_rates(const Recording& recording, const Iner
     });
     equations.add(X, change / (on_grid.end - on_grid.begin));
   }
-  return equations.solve();
+  const std::optional<Solved> solved = equations.solve(false);
+  return solved ? std::optional(solved->matrix) : std::nullopt;
 }
 
-Evidence delay_row(double delay_s, double sigma_s) {
-  constexpr double kCare_s = 0.02;
-  constexpr double kFailed_s = 0.2;
-  Evidence row{
-      .name = "delay of the accelerometer",
-      .about = "accelerometer and gyro",
-      .outcome = estimation::outcome_of(delay_s, sigma_s, estimation::Tolerance::about(0.0, kCare_s, kFailed_s)),
-      .value = delay_s,
-      .limit = kCare_s,
-      .scale = "s",
-      .text = fmt::format("the accelerometer is {:.3f} +- {:.3f} s {} gyro and attitude", std::abs(delay_s), sigma_s,
-                          delay_s < 0.0 ? "before" : "behind"),
-      .bears_on = estimation::kAllPurposes};
-  if (!row.passed()) row.advice = "check the stamps of accelerometer and gyro, and the filters that they went through";
-  return row;
+Evidence delay_row(Check check, const char* about, double delay_s, double sigma_s, Cause cause) {
+  Evidence row = estimation::row_of(check, about, delay_s, sigma_s);
+  if (!row.passed()) row.cause = cause;
+  return std::move(row).with("size", std::abs(delay_s)).with("way", delay_s < 0.0 ? "before" : "behind");
+}
+
+/// The delay of the velocity, or of down, where only that is conspicuous.
+Evidence velocity_delay_row(const InertialConsistency& c) {
+  const Evidence level =
+      delay_row(Check::kVelocityDelay, "ground velocity", c.velocity_delay, c.velocity_delay_sigma, Cause::kDelay);
+  const Evidence down =
+      delay_row(Check::kVelocityDelay, "ground velocity", c.vertical_delay, c.vertical_delay_sigma, Cause::kLag);
+  return down.outcome > level.outcome ? down : level;
 }
 
 }  // namespace
@@ -342,49 +471,48 @@ InertialConsistency inertial_consistency(const Recording& recording, std::span<c
 }
 
 std::vector<Evidence> inertial_evidence(const InertialConsistency& c) {
-  constexpr SensorTolerance kForce{.gain_care = 0.02, .gain_failed = 0.15, .bias_care = 0.1, .bias_failed = 1.0};
-  constexpr SensorTolerance kVelocity{.gain_care = 0.02, .gain_failed = 0.15, .bias_care = 0.2, .bias_failed = 2.0};
-  constexpr SensorTolerance kRate{
-      .gain_care = 0.02, .gain_failed = 0.15, .bias_care = 0.3 * kDegree, .bias_failed = 5.0 * kDegree};
-  const SensorNames force{"accelerometer", "velocity and attitude", {"x", "y", "z"}, "m/s^2"};
-  const SensorNames velocity{
-      "ground velocity", "accelerometer and attitude", {"north", "east", "down"}, "m/s^2 of its derivative"};
-  const SensorNames rate{"gyro", "the attitude", {"x", "y", "z"}, "rad/s"};
+  const SensorNames force{"accelerometer",    "velocity and attitude",   {"x", "y", "z"},
+                          Check::kSensorGain, Check::kAccelerometerBias, 1.0,
+                          parse_unit("m/s^2")};
+  const SensorNames velocity{"ground velocity",  "accelerometer and attitude", {"north", "east", "down"},
+                             Check::kSensorGain, Check::kVelocityBias,         1.0,
+                             parse_unit("m/s")};
+  const SensorNames rate{"gyro",           "the attitude", {"x", "y", "z"},    Check::kSensorGain,
+                         Check::kGyroBias, kDegree,        parse_unit("rad/s")};
+  const double failed = estimation::info_of(Check::kSensorGain).tolerance.highest;
   std::vector<Evidence> rows;
-  const auto add = [&](const SensorMatrix& matrix, const SensorNames& names, const SensorTolerance& tolerance) {
-    for (Evidence& row : sensor_matrix_evidence(matrix, names, tolerance)) rows.push_back(std::move(row));
+  const auto add = [&](const SensorMatrix& matrix, const SensorNames& names) {
+    std::vector<Evidence> of_sensor = sensor_matrix_evidence(matrix, names);
+    std::ranges::move(of_sensor, std::back_inserter(rows));
+    return std::ranges::any_of(rows.end() - signed_index(of_sensor.size()), rows.end(),
+                               [](const Evidence& row) { return row.outcome == Outcome::kFailed; });
   };
-  const auto failed = [&](const std::string& sensor) {
-    return std::ranges::any_of(
-        rows, [&](const Evidence& row) { return row.about == sensor && row.outcome == estimation::Outcome::kFailed; });
-  };
+  bool force_failed = false, rate_failed = false;
   if (c.accelerometer) {
     // The same contradiction read the other way: a wrong velocity leaves less unexplained than a wrong accelerometer,
     // and without a bias: the derivative of a velocity has none, while a wrong specific force shows gravity as one.
     constexpr double kClearlyBetter = 0.7;
     // Where the gyro contradicts the attitude too, the attitude is the suspect.
-    const bool attitude_holds = !c.gyro || !gain_fault(*c.gyro, rate, kRate.gain_failed);
-    const bool rather_velocity = attitude_holds && gain_fault(*c.accelerometer, force, kForce.gain_failed) &&
-                                 c.velocity && gain_fault(*c.velocity, velocity, kVelocity.gain_failed) &&
-                                 c.velocity->bias.cwiseAbs().maxCoeff() < kVelocity.bias_failed &&
-                                 c.velocity->unexplained() < kClearlyBetter * c.accelerometer->unexplained();
+    const bool attitude_holds = !c.gyro || !gain_fault(*c.gyro, rate, failed);
+    const bool rather_velocity =
+        attitude_holds && c.velocity && gain_fault(*c.velocity, velocity, failed) &&
+        c.velocity->bias.cwiseAbs().maxCoeff() < estimation::info_of(Check::kVelocityBias).tolerance.highest &&
+        c.velocity->unexplained() < kClearlyBetter * c.accelerometer->unexplained();
     if (rather_velocity)
-      add(*c.velocity, velocity, kVelocity);
+      add(*c.velocity, velocity);
     else
-      add(*c.accelerometer, force, kForce);
+      force_failed = add(*c.accelerometer, force);
   }
-  if (c.gyro) add(*c.gyro, rate, kRate);
-  if (c.accelerometer_delay) rows.push_back(delay_row(*c.accelerometer_delay, c.accelerometer_delay_sigma));
-  if (failed("gyro") && failed("accelerometer")) {
-    rows.push_back(
-        {.name = "attitude against gyro and accelerometer",
-         .about = "attitude",
-         .outcome = estimation::Outcome::kFailed,
-         .value = kNaN,
-         .limit = kNaN,
-         .text = "gyro and accelerometer both contradict the attitude: rather than both of them, it is wrong",
-         .bears_on = estimation::kAllPurposes,
-         .advice = "check signs, units and order of roll, pitch and yaw in [data.map]"});
+  if (c.gyro) rate_failed = add(*c.gyro, rate);
+  if (c.accelerometer_delay) {
+    rows.push_back(delay_row(Check::kAccelerometerDelay, "accelerometer", *c.accelerometer_delay,
+                             c.accelerometer_delay_sigma, Cause::kDelay));
+    rows.push_back(velocity_delay_row(c));
+  }
+  if (rate_failed && force_failed) {
+    Evidence row = estimation::row_of(Check::kAttitude, "attitude", Outcome::kFailed);
+    row.cause = Cause::kAxis;
+    rows.push_back(std::move(row));
   }
   return rows;
 }

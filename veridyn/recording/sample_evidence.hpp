@@ -13,6 +13,7 @@ namespace veridyn::recording {
 enum class Rest {
   kFault,     ///< of a sensor that is moved
   kLongOnly,  ///< of a control only where it is very long
+  kControl,   ///< of a control, which says that nothing of its effect is seen meanwhile: stated, where it is long
   kNone       ///< of a control whose rest is judged by what the vehicle does
 };
 

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "veridyn/estimation/judgement/evidence.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 
 namespace veridyn::recording {
 
@@ -17,6 +17,8 @@ struct SensorMatrix {
   Eigen::Matrix3d gain_sigma = Eigen::Matrix3d::Zero();
   Eigen::Vector3d bias = Eigen::Vector3d::Zero();  ///< in the sensor's unit
   Eigen::Vector3d bias_sigma = Eigen::Vector3d::Zero();
+  /// Of each axis, whether it moved enough to say anything of its gain. Of one that did not the gain is taken as 1.
+  std::array<bool, 3> moved{true, true, true};
   double residual_rms = 0.0;  ///< what is left of the other source's signal
   double signal_rms = 0.0;    ///< of the other source's signal about its mean
   Eigen::Index rows = 0;
@@ -24,34 +26,31 @@ struct SensorMatrix {
   [[nodiscard]] double unexplained() const { return residual_rms * residual_rms / (signal_rms * signal_rms); }
 };
 
-/// How good a sensor's gain and bias must be.
-struct SensorTolerance {
-  double gain_care = 0.02;    ///< beyond three standard errors: with care
-  double gain_failed = 0.15;  ///< and failed
-  double bias_care = 0.0;     ///< in the unit of the bias
-  double bias_failed = 0.0;
-};
-
-/// What a sensor is called, and its axes and unit, in messages.
+/// What a sensor is called, its axes, and the checks of its gain and bias.
 struct SensorNames {
   std::string sensor;               ///< "accelerometer"
   std::string against;              ///< "velocity and attitude"
   std::array<std::string, 3> axes;  ///< {"x", "y", "z"}
-  std::string unit;                 ///< of the bias
+  estimation::Check gain = {}, bias = {};
+  double bias_unit = 1.0;  ///< that of the check, in the sensor's unit
+  Unit unit = {};          ///< in which the sensor was taken to be recorded
 };
 
-/// Rows "gain of the accelerometer" and "bias of the accelerometer", with the fault in the words of the trade: axes
-/// that are swapped, a sign, a unit, a scale factor, a misalignment.
+/// Rows of a sensor's gain and bias, with what is wrong: axes that are swapped, a sign, a unit, a scale factor, a
+/// misalignment; and one, not verified, of the axes that did not move.
 [[nodiscard]] std::vector<estimation::Evidence> sensor_matrix_evidence(const SensorMatrix& matrix,
-                                                                       const SensorNames& names,
-                                                                       const SensorTolerance& tolerance);
+                                                                       const SensorNames& names);
 
-/// The most conspicuous fault that a gain shows, in words; nothing where it is within the tolerance everywhere.
-[[nodiscard]] std::optional<std::string> gain_fault(const SensorMatrix& matrix, const SensorNames& names,
-                                                    double tolerance);
+/// The most conspicuous fault that a gain shows.
+struct GainFault {
+  estimation::Cause cause = estimation::Cause::kNone;
+  std::string axes;  ///< "y and z"; of axes that are mixed "x reads minus y", of misaligned ones "x reads 0.1 z"
+  double factor = 1.0, sigma = 0.0;  ///< reading over truth, of a unit or scale
+  std::string unit = {};             ///< the two that were mistaken: "g taken for m/s^2"
+};
 
-/// A unit that was taken for another, by the factor between the two: "g instead of m/s^2"; empty where none is near.
-/// @param doubt  of the factor, as a share of it; at most 0.15 counts
-[[nodiscard]] std::string mistaken_unit(double factor, double doubt = 0.0);
+/// Nothing where the gain is within the tolerance everywhere.
+[[nodiscard]] std::optional<GainFault> gain_fault(const SensorMatrix& matrix, const SensorNames& names,
+                                                  double tolerance);
 
 }  // namespace veridyn::recording

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 
 #include "veridyn/estimation/judgement/evidence.hpp"
@@ -9,8 +10,12 @@ namespace veridyn::recording {
 
 /// What a delay report is about, for its row.
 struct TimeOrder {
-  double early_s = 0.03;    ///< beyond three standard errors: recorded too late after (or before) what it goes with
-  bool is_control = false;  ///< the report's group moves what its reference shows: a surface, the steering
+  double early_s = 0.03;       ///< beyond three standard errors: recorded too late after (or before) what it goes with
+  double failed_s = kNever_s;  ///< and failed
+  bool is_control = false;     ///< the report's group moves what its reference shows: a surface, the steering
+  std::string key = {};        ///< of the study that takes its delay; empty: "delays.GROUP"
+
+  static constexpr double kNever_s = std::numeric_limits<double>::infinity();
 };
 
 /// Whether what a report is about shows something before its reference does, which no sensor can: by how much it is
@@ -18,23 +23,19 @@ struct TimeOrder {
 [[nodiscard]] bool is_early(const DelayReport& report, const TimeOrder& order);
 
 /// Whether a control seems to be recorded too early, by more than `order.early_s` and chance, but what else moves the
-/// vehicle is too much to be sure (`DelayReport::in_doubt`).
+/// vehicle is too much to be sure (DelayFinding::kInDoubt).
 [[nodiscard]] bool is_doubtful(const DelayReport& report, const TimeOrder& order);
 
 /// Whether a report is of a channel that moves against what its reference implies.
 [[nodiscard]] bool is_opposite(const DelayReport& report);
 
-/// Row "order in time" of a report that `is_early`, with care.
+/// Row Check::kOrderInTime of a report that `is_early`: failed beyond `order.failed_s` and chance, else with care.
 [[nodiscard]] estimation::Evidence early_row(const DelayReport& report, const TimeOrder& order);
 
-/// Row "order in time" of a report that `is_doubtful`, with care.
+/// Row Check::kOrderInTime of a report that `is_doubtful`, with care.
 [[nodiscard]] estimation::Evidence doubtful_row(const DelayReport& report, const TimeOrder& order);
 
-/// Row "sign against the other sensors" of a report that `is_opposite`, with care.
+/// Row Check::kSignAgainstOthers of a report that `is_opposite`, with care.
 [[nodiscard]] estimation::Evidence opposite_row(const DelayReport& report);
-
-/// The same row for a sensor that is late against `shown_by`, which follows from it: "the gyro is 0.10 s late".
-[[nodiscard]] estimation::Evidence late_row(const std::string& sensor, const std::string& shown_by, double delay_s,
-                                            double limit_s);
 
 }  // namespace veridyn::recording

@@ -79,10 +79,14 @@ Change of_subject(std::function<void(Subject&)> change) {
 
 std::vector<Fault> all_faults() {
   constexpr double kKnot = 0.514444;
-  const std::vector<std::string> accel{"accelerometer"}, gyro{"gyro"}, attitude{"attitude", "roll", "pitch", "yaw"},
-      velocity{"ground velocity", "vel_north", "vel_east", "vel_down"}, air{"airspeed", "dynamic_pressure"},
-      alpha{"alpha"}, beta{"beta"}, both{"alpha", "beta"}, controls{"controls", "elevator", "aileron", "rudder"},
-      body{"body", "mass", "inertia", "CL_alpha", "CL"}, clock{"time"};
+  using estimation::Check;
+  using test::NamedBy;
+  const NamedBy accel({"accelerometer"}, {Check::kAccelerometerBias, Check::kAccelerometerDelay}),
+      gyro({"gyro"}, {Check::kGyroBias, Check::kGyroDelay}), attitude({"attitude", "roll", "pitch", "yaw"}),
+      velocity({"ground velocity", "vel_north", "vel_east", "vel_down"}), air({"airspeed", "dynamic_pressure"}),
+      alpha({"alpha"}), beta({"beta"}), both({"alpha", "beta"}),
+      controls({"controls", "elevator", "aileron", "rudder"}),
+      body({"body", "mass", "inertia", "CL_alpha", "CL"}, {Check::kPlausibleLiftSlope}), clock({"time"});
   return {
       {"accelerometer in g", accel, scaled(kAccel, 1.0 / kGravity)},
       {"accelerometer without gravity", accel, without_gravity},
@@ -160,8 +164,8 @@ std::vector<Fault> all_faults() {
       {"elevator 0.2 s late", controls, delayed({"elevator"}, 0.2)},
       {"deflections 0.2 s late", controls, delayed(kSurfaces, 0.2)},
       {"elevator frozen for half the flight", controls, frozen({"elevator"}, 0.5)},
-      {"engine in rpm", {"engine_speed", "throttle", "CD"}, scaled({"engine_speed"}, 30.0 / kPi)},
-      {"engine speed 1.1 times", {"engine_speed", "CD"}, scaled({"engine_speed"}, 1.1)},
+      {"engine in rpm", NamedBy({"engine_speed", "throttle", "CD"}), scaled({"engine_speed"}, 30.0 / kPi)},
+      {"engine speed 1.1 times", NamedBy({"engine_speed", "CD"}), scaled({"engine_speed"}, 1.1)},
       {"clock 3 % slow", clock, with_clock([](double t) { return 1.03 * t; })},
       {"clock in ms taken for s", clock, with_clock([](double t) { return 1000.0 * t; })},
       {"clock that jumps by 5 s", clock, with_clock([](double t) { return t > 100.0 ? t + 5.0 : t; })},

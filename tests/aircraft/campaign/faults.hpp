@@ -4,14 +4,15 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/fault_campaign.hpp"
 #include "veridyn/aircraft/aircraft_study.hpp"
 
 namespace veridyn::aircraft::testing {
 
 /// One thing that is wrong with a flight: what its sensors recorded, or what is said of the aircraft.
 struct Fault {
-  std::string name;               ///< "accelerometer in g"
-  std::vector<std::string> rows;  ///< rows about one of these name it
+  std::string name;    ///< "accelerometer in g"
+  test::NamedBy rows;  ///< what names it
   std::function<void(FlightStudy&)> apply;
 };
 

@@ -7,6 +7,7 @@
 
 #include "tests/aircraft/campaign/campaign.hpp"
 #include "tests/aircraft/stripped_recording.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/numerics/threads/parallel.hpp"
 
 /// Simulated flights stripped of sensors: what each costs, and whether what is still said is true.
@@ -148,21 +149,25 @@ TEST(MissingSensorsCampaign, CostWhatDependsOnThem) {
   EXPECT_GE(beta.coverage(), 0.9);
 }
 
+using estimation::Check;
+
 TEST(MissingSensorsCampaign, AreNamedByTheRowsThatDecide) {
   const FlightStudy study = campaign_flight("unatrap", 1, 200.0, "low_light");
-  const auto row_of = [&](const char* step, const char* name) {
+  const auto row_of = [&](const char* step, Check check, std::string_view about) {
     const std::vector<Stripped> all = steps();
     const Identified flight = flown_without(study, *std::ranges::find(all, step, &Stripped::name));
     const auto& rows = flight.analysis.estimate.evidence;
-    const auto row = std::ranges::find(rows, name, &estimation::Evidence::name);
+    const auto row =
+        std::ranges::find_if(rows, [&](const estimation::Evidence& e) { return e.check == check && e.about == about; });
     return row == rows.end() ? estimation::Evidence{} : *row;
   };
-  EXPECT_EQ(row_of("pitot tube", "no airspeed sensor").outcome, estimation::Outcome::kFailed);
-  EXPECT_EQ(row_of("vanes", "no alpha vane").outcome, estimation::Outcome::kFailed);
-  EXPECT_EQ(row_of("beta vane", "no beta vane").outcome, estimation::Outcome::kFailed);
-  EXPECT_TRUE(row_of("beta vane", "no alpha vane").name.empty());
-  EXPECT_EQ(row_of("ground velocity", "ground velocity").outcome, estimation::Outcome::kNotVerified);
-  EXPECT_EQ(row_of("attitude, heading", "attitude").outcome, estimation::Outcome::kNotVerified);
+  EXPECT_EQ(row_of("pitot tube", Check::kNoAirspeedSensor, "airspeed").outcome, estimation::Outcome::kFailed);
+  EXPECT_EQ(row_of("vanes", Check::kNoVane, "alpha").outcome, estimation::Outcome::kFailed);
+  EXPECT_EQ(row_of("beta vane", Check::kNoVane, "beta").outcome, estimation::Outcome::kFailed);
+  EXPECT_TRUE(row_of("beta vane", Check::kNoVane, "alpha").check == Check::kUnknown);
+  EXPECT_EQ(row_of("ground velocity", Check::kNoGroundVelocity, "ground velocity").outcome,
+            estimation::Outcome::kNotVerified);
+  EXPECT_EQ(row_of("attitude, heading", Check::kNoAttitude, "attitude").outcome, estimation::Outcome::kNotVerified);
 }
 
 }  // namespace

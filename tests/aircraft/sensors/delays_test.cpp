@@ -61,7 +61,7 @@ TEST(AlignDelays, TakesTheLatenessOfTheGpsOffItsStamps) {
   const AlignedRecording aligned = align_delays(flight(), {});
   const DelayReport* gps = find(aligned.delays, "gps");
   ASSERT_NE(gps, nullptr);
-  EXPECT_TRUE(gps->applied) << gps->text;
+  EXPECT_TRUE(gps->applied()) << recording::says(*gps);
   EXPECT_NEAR(gps->delay_s, kLate_s, 0.01);
   EXPECT_NEAR(aligned.mapped.recording.at("vel_north").times().front(), -kLate_s, 0.01);
 }
@@ -72,9 +72,8 @@ TEST(AlignDelays, FindsNoDelayInTurbulenceWhereThereIsNone) {
   for (const char* aircraft : {"tut_airplane", "aerosonde", "x8"}) {
     const FlightStudy study = aircraft::testing::campaign_flight(aircraft, 3, 150.0);
     for (const DelayReport& report : align_delays(study.mapped, {}).delays) {
-      EXPECT_FALSE(report.applied) << aircraft << " " << report.group << " " << report.delay_s;
-      EXPECT_LT(std::abs(report.text.starts_with("not determined") ? 0.0 : report.delay_s), 0.01)
-          << aircraft << " " << report.group;
+      EXPECT_FALSE(report.applied()) << aircraft << " " << report.group << " " << report.delay_s;
+      EXPECT_LT(std::abs(report.determined() ? report.delay_s : 0.0), 0.01) << aircraft << " " << report.group;
     }
   }
 }
@@ -96,8 +95,8 @@ TEST(AlignDelays, FindsNoDelayInCalmAirWhereByTheForceTwoFitAsWell) {
     const std::vector<DelayReport> reports = align_delays(study.mapped, {}).delays;
     const DelayReport* alpha = find(reports, "alpha");
     ASSERT_NE(alpha, nullptr);
-    EXPECT_FALSE(alpha->applied) << alpha->delay_s;
-    EXPECT_EQ(alpha->text, "too small to matter");
+    EXPECT_FALSE(alpha->applied()) << alpha->delay_s;
+    EXPECT_EQ(alpha->finding, recording::DelayFinding::kSmall);
     EXPECT_EQ(alpha->reference, "gyro, accelerometer and attitude");
     EXPECT_LT(std::abs(alpha->delay_s), 0.005);
     const DelayReport* elevator = find(reports, "elevator");
@@ -116,7 +115,7 @@ TEST(AlignDelays, FindsThoseOfVanesAndSurfacesInTurbulence) {
   for (const auto& [group, late_s] : {std::pair{"alpha", 0.08}, {"beta", 0.2}, {"aileron", 0.06}}) {
     const DelayReport* report = find(reports, group);
     ASSERT_NE(report, nullptr);
-    EXPECT_TRUE(report->applied) << group << ": " << report->text;
+    EXPECT_TRUE(report->applied()) << group << ": " << recording::says(*report);
     EXPECT_NEAR(report->delay_s, late_s, 3.0 * report->sigma_s) << group;
     EXPECT_LT(report->sigma_s, 0.01) << group;
   }
@@ -130,8 +129,8 @@ TEST(AlignDelays, StampsInMillisecondsCalledSecondsCostNoTime) {
   EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 5.0);
   const DelayReport* gps = find(reports, "gps");
   ASSERT_NE(gps, nullptr);
-  EXPECT_FALSE(gps->applied);
-  EXPECT_EQ(gps->text, "not determined: 0.005 samples a second are fewer than 0.5");
+  EXPECT_FALSE(gps->applied());
+  EXPECT_EQ(gps->finding, recording::DelayFinding::kSlow);
 }
 
 TEST(AlignDelays, StopsWhenItIsInterrupted) {
@@ -145,7 +144,7 @@ TEST(AlignDelays, GivenOnesAreAppliedAndNothingElseWithoutTheAutomatic) {
   const Study study = Study::parse("[delays]\nautomatic = false\ngps = '50 ms'\n", "study.toml", ".");
   const AlignedRecording aligned = align_delays(flight(), DelayAlignment::read(study.root().table("delays")));
   ASSERT_EQ(aligned.delays.size(), 1u);
-  EXPECT_EQ(aligned.delays[0].text, "given in the study");
+  EXPECT_EQ(aligned.delays[0].finding, recording::DelayFinding::kGiven);
   EXPECT_DOUBLE_EQ(aligned.mapped.recording.at("vel_east").times().front(), -0.05);
 }
 
@@ -163,7 +162,7 @@ TEST(AlignDelays, SurfacesThatMoveSeparatelyKeepDelaysOfTheirOwn) {
   for (const auto& [name, truth] : {std::pair{"aileron", 0.08}, {"rudder", 0.15}}) {
     const DelayReport* report = find(reports, name);
     ASSERT_NE(report, nullptr);
-    EXPECT_TRUE(report->applied) << report->text;
+    EXPECT_TRUE(report->applied()) << recording::says(*report);
     EXPECT_NEAR(report->delay_s, truth, 1.96 * report->sigma_s) << name;
     EXPECT_LT(report->sigma_s, 0.03);
     EXPECT_THAT(report->together, IsEmpty());
@@ -191,9 +190,9 @@ TEST(AlignDelays, SurfacesThatMoveTogetherGetOneDelay) {
     EXPECT_EQ(aileron->delay_s, rudder->delay_s) << aircraft;
     EXPECT_NEAR(aileron->delay_s, 0.1, 1.96 * aileron->sigma_s) << aircraft;
     EXPECT_LT(aileron->sigma_s, 0.03);
-    EXPECT_TRUE(aileron->applied && rudder->applied);
+    EXPECT_TRUE(aileron->applied() && rudder->applied());
     EXPECT_THAT(rudder->together, ::testing::ElementsAre("aileron", "rudder"));
-    EXPECT_THAT(rudder->text, HasSubstr("one delay for aileron and rudder"));
+    EXPECT_THAT(says(*rudder), HasSubstr("one delay for aileron and rudder"));
     // Both are taken off once.
     for (const char* name : {"aileron", "rudder"})
       EXPECT_NEAR(aligned.mapped.recording.at(name).times().front(),
@@ -212,7 +211,7 @@ TEST(AlignDelays, GivenOnesAreNotFoundTogetherWithOthers) {
   mapped.recording.set(std::move(copy));
   const std::vector<DelayReport> reports = align_delays(mapped, given).delays;
   EXPECT_THAT(find(reports, "aileron")->together, IsEmpty());
-  EXPECT_EQ(find(reports, "rudder")->text, "given in the study");
+  EXPECT_EQ(find(reports, "rudder")->finding, recording::DelayFinding::kGiven);
 }
 
 }  // namespace

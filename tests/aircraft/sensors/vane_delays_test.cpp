@@ -41,10 +41,10 @@ TEST(VaneDelays, AreFoundInCalmAir) {
       for (const auto& [name, report] : vanes_of(with_late_vanes(study, alpha_s, beta_s))) {
         const double truth = name == "alpha" ? alpha_s : beta_s;
         const std::string what = fmt::format("{} {} {}: {:.4f} +- {:.4f} {}", aircraft, name, truth, report.delay_s,
-                                             report.sigma_s, report.text);
+                                             report.sigma_s, recording::says(report));
         EXPECT_NEAR(report.delay_s, truth, std::min(0.005, 3.0 * report.sigma_s)) << what;
         EXPECT_LT(report.sigma_s, 0.01) << what;
-        EXPECT_EQ(report.applied, std::abs(report.delay_s) > std::max(0.01, 3.0 * report.sigma_s)) << what;
+        EXPECT_EQ(report.applied(), std::abs(report.delay_s) > std::max(0.01, 3.0 * report.sigma_s)) << what;
         EXPECT_TRUE(report.determined()) << what;
         EXPECT_FALSE(report.contradicted_by.has_value()) << what;
       }
@@ -62,7 +62,7 @@ TEST(VaneDelays, AreFoundWithAWrongScaleAndZero) {
   }
   for (const auto& [name, report] : vanes_of(study)) {
     EXPECT_NEAR(report.delay_s, 0.06, std::min(0.006, 3.0 * report.sigma_s)) << name;
-    EXPECT_TRUE(report.applied) << report.text;
+    EXPECT_TRUE(report.applied()) << recording::says(report);
   }
 }
 
@@ -88,8 +88,9 @@ TEST(VaneDelays, AreNotDeterminedWithoutManoeuvres) {
                               "level.toml"),
                  silent);
   for (const auto& [name, report] : vanes_of(with_late_vanes(level, 0.06, 0.06))) {
-    EXPECT_FALSE(report.applied) << name;
-    EXPECT_FALSE(report.determined()) << name << " " << report.delay_s << " +- " << report.sigma_s << report.text;
+    EXPECT_FALSE(report.applied()) << name;
+    EXPECT_FALSE(report.determined()) << name << " " << report.delay_s << " +- " << report.sigma_s
+                                      << recording::says(report);
   }
 }
 
@@ -105,7 +106,7 @@ VaneTally tally_of(const char* aircraft, const std::string& turbulence, std::uin
       for (const auto& [name, report] : vanes_of(with_late_vanes(study, truth, truth))) {
         const double error = report.delay_s - truth;
         ++tally.vanes;
-        if (report.applied && std::abs(error) > 3.0 * report.sigma_s) ++tally.wrong;
+        if (report.applied() && std::abs(error) > 3.0 * report.sigma_s) ++tally.wrong;
         if (!report.determined()) continue;
         ++tally.determined;
         if (std::abs(error) < 1.96 * report.sigma_s) ++tally.within;

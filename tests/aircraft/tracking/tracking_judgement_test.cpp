@@ -14,6 +14,7 @@
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
 #include "veridyn/aircraft/track_flight.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/numerics/random.hpp"
 #include "veridyn/numerics/threads/parallel.hpp"
 
@@ -68,7 +69,13 @@ OnLineCoverage coverage_on_line(const std::string& aircraft, std::uint64_t seeds
 
 const Evidence* row_named(const estimation::Estimate& estimate, const std::string& name, const std::string& about) {
   for (const Evidence& row : estimate.evidence)
-    if (row.name == name && row.about == about) return &row;
+    if (name_of(row) == name && row.about == about) return &row;
+  return nullptr;
+}
+
+const Evidence* row_of(const estimation::Estimate& estimate, estimation::Check check, const std::string& about) {
+  for (const Evidence& row : estimate.evidence)
+    if (row.check == check && row.about == about) return &row;
   return nullptr;
 }
 
@@ -80,12 +87,12 @@ TEST(TrackingJudgement, GradesACleanFlightAndSaysWhatItRestsOn) {
   EXPECT_NE(estimate.judgement.parameters.grade, Grade::kNo);
   EXPECT_EQ(estimate.judgement.prediction.grade, Grade::kYes);
   // Rows of the recording, those of identify, and rows of every coefficient.
-  EXPECT_NE(row_named(estimate, "deflections", "controls"), nullptr);
-  EXPECT_TRUE(row_named(estimate, "plausibility of Cm_q", "Cm_q")->passed());
+  EXPECT_NE(row_of(estimate, estimation::Check::kDeflections, "controls"), nullptr);
+  EXPECT_TRUE(row_of(estimate, estimation::Check::kPlausibleSign, "Cm_q")->passed());
   for (const char* name : {"CL", "CD", "CY", "Cl", "Cm", "Cn"}) {
     const Evidence* row = row_named(estimate, "residual beyond the sensors", name);
     ASSERT_NE(row, nullptr) << name;
-    EXPECT_TRUE(row->passed()) << name << ": " << row->text;
+    EXPECT_TRUE(row->passed()) << name << ": " << says(*row);
   }
 }
 
@@ -107,7 +114,7 @@ TEST(TrackingJudgement, SaysThatALiveRecordingWasNotChecked) {
   (void)live.advance(study.mapped, study, false, silent);
   const estimation::Estimate before = live.estimate();
   EXPECT_EQ(before.judgement.data.grade, Grade::kNotJudged);
-  EXPECT_NE(row_named(before, "recording", ""), nullptr);
+  EXPECT_NE(row_of(before, estimation::Check::kUncheckedRecording, ""), nullptr);
   live.check_recording(study.mapped, study, {}, silent);
   EXPECT_EQ(live.estimate().judgement.data.grade, Grade::kYes);
 }
@@ -141,10 +148,10 @@ TEST(TrackedEvidence, AsksWhetherAnAircraftHasSuchValues) {
   const Subject subject = builtin_subject("thor");
   const auto row = [&](double Cm_q) {
     const std::vector<Evidence> rows = tracked_evidence(tracked_cm(Cm_q), subject);
-    return *std::ranges::find(rows, "plausibility of Cm_q", &Evidence::name);
+    return *std::ranges::find(rows, estimation::Check::kPlausibleSign, &Evidence::check);
   };
-  EXPECT_EQ(row(-10.0).outcome, estimation::Outcome::kPassed) << row(-10.0).text;
-  EXPECT_EQ(row(10.0).outcome, estimation::Outcome::kCare) << row(10.0).text;
+  EXPECT_EQ(row(-10.0).outcome, estimation::Outcome::kPassed) << says(row(-10.0));
+  EXPECT_EQ(row(10.0).outcome, estimation::Outcome::kCare) << says(row(10.0));
   // What was held was not measured.
   TrackedCoefficient unknown = tracked_cm(10.0);
   const Eigen::MatrixXd W = unknown.tracker->regression().options().error_covariance;

@@ -40,7 +40,7 @@ TEST(SensorsSection, SaysWhereEachChannelIsFromAndByHowMuchItIsLate) {
                     .delay_s = 0.0204,
                     .sigma_s = 0.001,
                     .correlation = 0.98,
-                    .text = "applied"}};
+                    .finding = recording::DelayFinding::kApplied}};
   const Section section = sensors_section(flight);
   check({.sections = {section}});
   const Table channels = test::table_of(section.blocks, "Channels");

@@ -96,10 +96,10 @@ Eigen::MatrixXd doubts_of_air_data(const CoefficientFit& fit, const FlightView& 
   for (std::size_t i = 0; i < view.flights.size(); ++i) {
     const PreparedFlight& flight = view.flights[i];
     if (fit.rows.rows_of(i) == 0) continue;
-    std::vector<SignalDoubt> doubts;
-    for (const FlightEvidence& row : flight.recording_evidence)
-      if (row.doubt && row.doubt->in_interval == in_interval && row.bears_on(fit.model.coefficient))
-        doubts.push_back(*row.doubt);
+    std::vector<SignalDoubt> doubts = flight.doubts;
+    std::erase_if(doubts, [&](const SignalDoubt& doubt) {
+      return doubt.in_interval != in_interval || !doubt.affects().contains(place_of(fit.model.coefficient));
+    });
     const auto changed_estimate = [&](const FlightSignals& changed) {
       RegressionData data =
           coefficient_rows(fit.model, view.flights, RowUse::kIdentification, view.subject, &flight, &changed).data;
@@ -128,7 +128,7 @@ std::string objection(const CoefficientResult& judged, const CoefficientChecks& 
   if (estimation::verdict_of(judged.judgement) != estimation::GroupVerdict::kEffective)
     return fmt::format("{} is rejected: {}", judged.name, first);
   return fmt::format("{} predicts {:.0f} % of the hold-out, but its values are no physical constants: {}", judged.name,
-                     100.0 * checks.holdout_fit.r2, first);
+                     100.0 * std::max(0.0, checks.holdout_fit.r2), first);
 }
 
 /// Of an estimate that may be used. `method` gave it, `dominant` is the constant of the aircraft that makes up most of
@@ -150,7 +150,7 @@ ExplainedVerdict explain(const CoefficientResult& described, const RegressionEst
   std::string reason =
       checks.has_holdout
           ? fmt::format("{} is identified by {}: it explains {:.0f} % of the hold-out", name, method,
-                        100.0 * checks.holdout_fit.r2)
+                        100.0 * std::max(0.0, checks.holdout_fit.r2))
           : fmt::format("{} is identified by {}, but there was no hold-out to validate it on", name, method);
   if (!dominant.empty()) reason += fmt::format("; its error bars are mostly those of {}", dominant);
   if (described.per_unit_inertia)
@@ -229,8 +229,8 @@ CoefficientResult judged(CoefficientResult result, CoefficientFit fit, const Fli
     if (!result.per_unit_inertia) plausible = plausibility(result.coefficient, fit.chosen->parameters, flight.subject);
     result.evidence.insert(result.evidence.end(), plausible.begin(), plausible.end());
     for (const PreparedFlight& one : flight.flights) {
-      for (const FlightEvidence& of_recording : one.recording_evidence)
-        if (of_recording.bears_on(result.coefficient)) result.evidence.push_back(of_recording.row);
+      for (const estimation::Evidence& of_recording : one.recording_evidence)
+        if (affects(of_recording, result.coefficient)) result.evidence.push_back(of_recording);
     }
     result.judgement = estimation::judge(result.evidence);
     const estimation::GroupVerdict reached = estimation::verdict_of(result.judgement);
@@ -313,7 +313,7 @@ Identification identify_coefficients(std::span<const PreparedFlight> flights, co
 
 std::vector<CoefficientResult> not_identified(const Subject& subject, const IdentifyOptions& options,
                                               const Contradiction& contradiction,
-                                              std::span<const FlightEvidence> evidence) {
+                                              std::span<const estimation::Evidence> evidence) {
   std::vector<CoefficientResult> results;
   for (const Coefficient coefficient : enumerators<Coefficient, kCoefficients>()) {
     const CoefficientModel* model = subject.model.find(coefficient);
@@ -326,8 +326,8 @@ std::vector<CoefficientResult> not_identified(const Subject& subject, const Iden
     result.model = *model;
     result.reason = fmt::format("{} is not identified: the motion is not known, {} contradicts {}", result.name,
                                 contradiction.channel, contradiction.against);
-    for (const FlightEvidence& row : evidence)
-      if (row.bears_on(coefficient)) result.evidence.push_back(row.row);
+    for (const estimation::Evidence& row : evidence)
+      if (affects(row, coefficient)) result.evidence.push_back(row);
     result.judgement = estimation::judge(result.evidence);
     results.push_back(std::move(result));
   }

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "veridyn/aircraft/identification/evidence/flight_evidence.hpp"
+#include "veridyn/aircraft/identification/evidence/checked_flight.hpp"
 #include "veridyn/aircraft/identification/fit/coefficient_result.hpp"
 #include "veridyn/aircraft/identification/options/identify_options.hpp"
 #include "veridyn/aircraft/identification/output_error/axis_output_error.hpp"
@@ -33,6 +33,6 @@ struct Identification {
 /// recording.
 [[nodiscard]] std::vector<CoefficientResult> not_identified(const Subject& subject, const IdentifyOptions& options,
                                                             const Contradiction& contradiction,
-                                                            std::span<const FlightEvidence> evidence);
+                                                            std::span<const estimation::Evidence> evidence);
 
 }  // namespace veridyn::aircraft

@@ -38,6 +38,7 @@ std::optional<Contradiction> contradiction_of(const FlightStreams& streams, cons
   c.channel = stream.channel;
   c.unit = stream.unit;
   c.against = reckoned_from(*lost);
+  c.by_gyro = *lost <= kYaw;
   c.span = {monitor.unsupported_since(), monitor.last_time()};
   c.departure = -monitor.largest_innovation();
   c.expected = monitor.largest_sigma();

@@ -46,6 +46,7 @@ struct GuardReport {
 struct Contradiction {
   std::string channel;     ///< "vel_down"
   std::string against;     ///< "accelerometer and attitude"
+  bool by_gyro = false;    ///< the attitude was reckoned from the gyro; else the velocity from the accelerometer
   TimeSpan span;           ///< from the first refusal to where the reconstruction ended
   double departure = 0.0;  ///< the largest of the reconstruction from the sensor, in `unit`
   double expected = 0.0;   ///< standard deviation that the filter expected of it

@@ -63,8 +63,6 @@ std::optional<DelayReport> better_of(std::optional<DelayReport> a, std::optional
   std::optional<DelayReport>&chosen = first ? a : b, &other = first ? b : a;
   if (both && std::abs(a->delay_s - b->delay_s) > 3.0 * std::hypot(a->sigma_s, b->sigma_s)) {
     chosen->contradicted_by = {other->reference, other->delay_s, other->sigma_s};
-    chosen->text +=
-        fmt::format("; by {} it would be {:.3f} +- {:.3f} s", other->reference, other->delay_s, other->sigma_s);
   }
   return std::move(chosen);
 }
@@ -108,7 +106,7 @@ class Alignment {
     const bool surface = surface_axis(group.name) != nullptr;
     if (!report.together.empty() || (surface && moving_together(group.name).size() > 1)) return;
     // Of a surface the position was moved later.
-    if (report.applied) take_off(group.channels, surface ? report.delay_s : -report.delay_s);
+    if (report.applied()) take_off(group.channels, surface ? report.delay_s : -report.delay_s);
     if (const std::optional<DelayReport> again = surface ? deflection(group) : vane(group)) report = *again;
   }
 
@@ -161,7 +159,7 @@ class Alignment {
 
   DelayReport compare(const DelayGroup& group, const char* reference, const std::vector<recording::DelayPair>& pairs) {
     DelayReport report = recording::shared_delay(group.name, reference, pairs, band_.rate_Hz(), options_);
-    if (report.applied) take_off(group.channels, report.delay_s);
+    if (report.applied()) take_off(group.channels, report.delay_s);
     return report;
   }
 
@@ -184,16 +182,8 @@ class Alignment {
     if (!has({"vel_north", "vel_east", "roll", "pitch", "yaw", "accel_x", "accel_y", "accel_z"})) return std::nullopt;
     const char* const reference = "accelerometer and attitude";
     const double fixes = at("vel_north").rate_Hz();
-    if (!(fixes >= recording::kSlowestDelayed_Hz)) {
-      return DelayReport{group.name,
-                         reference,
-                         0.0,
-                         0.0,
-                         0.0,
-                         false,
-                         fmt::format("not determined: {:.2g} samples a second are fewer than {:g}", fixes,
-                                     recording::kSlowestDelayed_Hz)};
-    }
+    if (!(fixes >= recording::kSlowestDelayed_Hz))
+      return DelayReport{group.name, reference, 0.0, 0.0, 0.0, recording::DelayFinding::kSlow};
     const Series &phi = smooth_angle("roll"), &theta = smooth_angle("pitch"), &psi = smooth_angle("yaw");
     const Series &ax = smooth("accel_x"), &ay = smooth("accel_y"), &az = smooth("accel_z");
     Series north(band_.size()), east(band_.size());
@@ -345,7 +335,7 @@ class Alignment {
   /// By what has the smaller error: the force, where air moves, or the motion, where it does not.
   std::optional<DelayReport> vane(const DelayGroup& group) {
     std::optional<DelayReport> report = better_of(vane_by_force(group), vane_by_motion(group));
-    if (report && report->applied) take_off(group.channels, report->delay_s);
+    if (report && report->applied()) take_off(group.channels, report->delay_s);
     return report;
   }
 
@@ -397,14 +387,13 @@ class Alignment {
                                        effects, band_.step(), options_, progress_, "surface");
     if (together.size() > 1) {
       report.together = together;
-      report.text += fmt::format("; one delay for {}, which move together", fmt::join(together, " and "));
       for (const std::string& surface : together) {
         shared_[surface] = report;
         shared_[surface].group = surface;
       }
     }
     // What is late here is the effect: the position is moved later, onto the clock of the motion.
-    if (report.applied) take_off(together, -report.delay_s);
+    if (report.applied()) take_off(together, -report.delay_s);
     return report;
   }
 
@@ -463,7 +452,7 @@ AlignedRecording align_delays(MappedRecording mapped, const DelayAlignment& opti
            !options.given_for(report.group);
   };
   const bool moved = std::ranges::any_of(
-      aligned.delays, [&](const DelayReport& report) { return report.applied && by_effect(report); });
+      aligned.delays, [&](const DelayReport& report) { return report.applied() && by_effect(report); });
   if (!alignment || !moved) return aligned;
   for (DelayReport& report : aligned.delays)
     if (by_effect(report))

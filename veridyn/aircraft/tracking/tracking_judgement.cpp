@@ -7,25 +7,13 @@
 #include "veridyn/aircraft/identification/evidence/coefficient_evidence.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/estimation/recursive/tracking_evidence.hpp"
 
 namespace veridyn::aircraft {
-namespace {
 
 using estimation::Evidence;
 using estimation::Judgement;
-
-FlightEvidence unchecked_row() {
-  return {{.name = "recording",
-           .outcome = estimation::Outcome::kMissing,
-           .value = kNaN,
-           .limit = kNaN,
-           .text = "the recording was not checked against itself and physics",
-           .bears_on = estimation::Purpose::kData,
-           .advice = "run veridyn identify on the finished log"}};
-}
-
-}  // namespace
 
 std::vector<Evidence> tracked_evidence(const TrackedCoefficient& c, const Subject& subject) {
   const std::string name = regressed_name(c.model.coefficient, subject);
@@ -41,13 +29,12 @@ std::vector<Evidence> tracked_evidence(const TrackedCoefficient& c, const Subjec
   return rows;
 }
 
-estimation::Estimate judged_estimate(const FlightTracker& tracker, std::span<const FlightEvidence> recording) {
+estimation::Estimate judged_estimate(const FlightTracker& tracker, std::span<const estimation::Evidence> recording) {
   estimation::Estimate estimate = tracker.estimate();
-  std::vector<FlightEvidence> of_flight(recording.begin(), recording.end());
-  if (of_flight.empty()) of_flight.push_back(unchecked_row());
-  std::vector<Evidence> of_all;
-  for (const FlightEvidence& e : of_flight) of_all.push_back(e.row);
-  estimate.evidence = of_all;
+  std::vector<Evidence> of_flight(recording.begin(), recording.end());
+  if (of_flight.empty())
+    of_flight.push_back(estimation::row_of(estimation::Check::kUncheckedRecording, "", estimation::Outcome::kMissing));
+  estimate.evidence = of_flight;
   std::vector<Judgement> parts;
   std::size_t at = 0;
   for (const TrackedCoefficient& c : tracker.coefficients()) {
@@ -57,8 +44,8 @@ estimation::Estimate judged_estimate(const FlightTracker& tracker, std::span<con
     at += c.model.size();
     const std::vector<Evidence> rows = tracked_evidence(c, tracker.subject());
     std::vector<Evidence> all = rows;
-    for (const FlightEvidence& e : of_flight)
-      if (e.bears_on(c.model.coefficient)) all.push_back(e.row);
+    for (const Evidence& row : of_flight)
+      if (affects(row, c.model.coefficient)) all.push_back(row);
     parts.push_back(estimation::judge(all));
     estimate.evidence.insert(estimate.evidence.end(), rows.begin(), rows.end());
     const std::vector<estimation::Parameter> marked =
@@ -66,7 +53,7 @@ estimation::Estimate judged_estimate(const FlightTracker& tracker, std::span<con
     std::copy(marked.begin(), marked.end(), first);
   }
   estimate.judgement = estimation::judge_together(parts);
-  estimate.judgement.data = estimation::judge(of_all).data;
+  estimate.judgement.data = estimation::judge(of_flight).data;
   return estimate;
 }
 

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "veridyn/aircraft/identification/evidence/flight_evidence.hpp"
+#include "veridyn/aircraft/identification/evidence/checked_flight.hpp"
 #include "veridyn/aircraft/tracking/flight_tracker.hpp"
 
 namespace veridyn::aircraft {
@@ -16,6 +16,6 @@ namespace veridyn::aircraft {
 /// it: effective or rejected.
 /// @param recording rows of the recording; empty: it was not checked, which a row says
 [[nodiscard]] estimation::Estimate judged_estimate(const FlightTracker& tracker,
-                                                   std::span<const FlightEvidence> recording);
+                                                   std::span<const estimation::Evidence> recording);
 
 }  // namespace veridyn::aircraft

@@ -98,8 +98,9 @@ Table delay_table(const PreparedFlight& flight) {
                            {.name = "Correlation", .digits = 2},
                            {.name = "Result"}}};
   for (const DelayReport& d : flight.delays) {
-    delays.rows.push_back({.cells = {text_cell(d.group), text_cell(d.reference), number_cell(1e3 * d.delay_s, 1),
-                                     number_cell(1e3 * d.sigma_s, 1), number_cell(d.correlation), text_cell(d.text)}});
+    delays.rows.push_back(
+        {.cells = {text_cell(d.group), text_cell(d.reference), number_cell(1e3 * d.delay_s, 1),
+                   number_cell(1e3 * d.sigma_s, 1), number_cell(d.correlation), text_cell(recording::says(d))}});
   }
   return delays;
 }

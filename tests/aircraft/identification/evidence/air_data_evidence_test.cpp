@@ -9,10 +9,14 @@
 #include "tests/aircraft/campaign/campaign.hpp"
 #include "tests/aircraft/circling_flight.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 
 namespace veridyn::aircraft {
 namespace {
 
+using estimation::Cause;
+using estimation::Check;
+using estimation::Evidence;
 using estimation::Outcome;
 
 TEST(DoubtOf, IsTheMeasurementsWhereThatIsGoodAndThePriorsWhereItIsNot) {
@@ -26,24 +30,24 @@ TEST(DoubtOf, IsTheMeasurementsWhereThatIsGoodAndThePriorsWhereItIsNot) {
 }
 
 /// The doubts of a flight of 150 s with a channel scaled.
-std::vector<FlightEvidence> evidence_with(const char* channel, double factor, const char* turbulence) {
+PreparedFlight evidence_with(const char* channel, double factor, const char* turbulence) {
   FlightStudy study = aircraft::testing::campaign_flight("unatrap", 1, 150.0, turbulence);
   Channel changed = study.mapped.recording.at(channel);
   for (double& v : changed.value) v *= factor;
   study.mapped.recording.set(std::move(changed));
-  return aircraft::testing::identified(study).analysis.flights.front().recording_evidence;
+  return aircraft::testing::identified(study).analysis.flights.front();
 }
 
-double doubt_about(const std::vector<FlightEvidence>& rows, FlightSignal signal) {
+double doubt_about(const std::vector<SignalDoubt>& doubts, FlightSignal signal) {
   double largest = 0.0;
-  for (const FlightEvidence& row : rows)
-    if (row.doubt && row.doubt->signal == signal) largest = std::max(largest, row.doubt->scale);
+  for (const SignalDoubt& doubt : doubts)
+    if (doubt.signal == signal) largest = std::max(largest, doubt.scale);
   return largest;
 }
 
 TEST(AirDataEvidence, LeavesLittleInDoubtInCalmAirAndMoreInTurbulence) {
-  const std::vector<FlightEvidence> calm = evidence_with("alpha", 1.0, "none");
-  const std::vector<FlightEvidence> rough = evidence_with("alpha", 1.0, "low_moderate");
+  const std::vector<SignalDoubt> calm = evidence_with("alpha", 1.0, "none").doubts;
+  const std::vector<SignalDoubt> rough = evidence_with("alpha", 1.0, "low_moderate").doubts;
   for (const FlightSignal signal : {FlightSignal::kAirspeed, FlightSignal::kAlpha, FlightSignal::kBeta}) {
     EXPECT_LT(doubt_about(calm, signal), 0.05) << kFlightSignalNames[signal];
     EXPECT_GT(doubt_about(rough, signal), doubt_about(calm, signal));
@@ -53,20 +57,17 @@ TEST(AirDataEvidence, LeavesLittleInDoubtInCalmAirAndMoreInTurbulence) {
 // A dynamic pressure of 1.2 times is within what headings in turbulence leave of the airspeed's scale. In calm air it
 // is named.
 TEST(AirDataEvidence, DoubtsAWrongScaleThatItCannotName) {
-  const auto row_of = [](const std::vector<FlightEvidence>& rows) {
-    return std::ranges::find_if(rows, [](const FlightEvidence& e) { return e.row.about == "airspeed" && e.doubt; });
-  };
-  const std::vector<FlightEvidence> calm = evidence_with("dynamic_pressure", 1.2, "none");
-  ASSERT_NE(row_of(calm), calm.end());
-  EXPECT_EQ(row_of(calm)->row.outcome, Outcome::kCare);
-  const std::vector<FlightEvidence> rough = evidence_with("dynamic_pressure", 1.2, "low_moderate");
-  ASSERT_NE(row_of(rough), rough.end());
-  EXPECT_GT(row_of(rough)->doubt->scale, 0.02);
+  const PreparedFlight calm = evidence_with("dynamic_pressure", 1.2, "none");
+  const auto row = std::ranges::find(calm.recording_evidence, Check::kAirspeedScale, &Evidence::check);
+  ASSERT_NE(row, calm.recording_evidence.end());
+  EXPECT_EQ(row->outcome, Outcome::kCare);
+  const PreparedFlight rough = evidence_with("dynamic_pressure", 1.2, "low_moderate");
+  EXPECT_GT(doubt_about(rough.doubts, FlightSignal::kAirspeed), 0.02);
 }
 
-/// The row of a name of five circles; `taken_off` is what the reconstruction found of an error, with its name.
-FlightEvidence circling_row(const std::string& name, const aircraft::testing::Circles& circles,
-                            const std::pair<const char*, double>& taken_off = {"none", 0.0}) {
+/// The checks of five circles; `taken_off` is what the reconstruction found of an error, with its name.
+CheckedFlight circled(const aircraft::testing::Circles& circles,
+                      const std::pair<const char*, double>& taken_off = {"none", 0.0}) {
   const Recording recording = aircraft::testing::circling(circles);
   Reconstruction reconstruction;
   Channel density = recording.at("air_density");
@@ -75,55 +76,71 @@ FlightEvidence circling_row(const std::string& name, const aircraft::testing::Ci
   reconstruction.smoothed.add(std::move(error));
   Segments segments;
   segments.airborne = {{0.0, aircraft::testing::kCirclingEnd_s}};
-  for (FlightEvidence& row : air_data_evidence(recording, reconstruction, true, segments))
-    if (row.row.name == name) return std::move(row);
-  throw std::logic_error("no row " + name);
+  return air_data_evidence(recording, reconstruction, true, segments);
+}
+
+Evidence row_in(const CheckedFlight& checked, Check check, std::string_view about) {
+  for (const Evidence& row : checked.rows)
+    if (row.check == check && row.about == about) return row;
+  throw std::logic_error("no row " + std::string(to_string(check)));
 }
 
 // In calm air the headings determine the scale to a fraction of a per cent.
 TEST(AirDataEvidence, GradesTheScaleOfTheAirspeed) {
   const auto row = [](double scale) {
-    return circling_row("airspeed against ground velocity", {.scale = scale, .gust = 0.05}).row;
+    return row_in(circled({.scale = scale, .gust = 0.05}), Check::kAirspeedScale, "airspeed");
   };
-  EXPECT_EQ(row(1.0).outcome, Outcome::kPassed) << row(1.0).text;
-  EXPECT_EQ(row(1.05).outcome, Outcome::kCare) << row(1.05).text;
-  EXPECT_EQ(row(0.8).outcome, Outcome::kFailed) << row(0.8).text;
-  EXPECT_THAT(row(1.9438).text, ::testing::HasSubstr("knots taken for m/s"));
-  EXPECT_FALSE(row(0.8).advice.empty());
+  EXPECT_EQ(row(1.0).outcome, Outcome::kPassed) << says(row(1.0));
+  EXPECT_EQ(row(1.05).outcome, Outcome::kCare) << says(row(1.05));
+  EXPECT_EQ(row(0.8).outcome, Outcome::kFailed) << says(row(0.8));
+  EXPECT_EQ(row(0.8).cause, Cause::kScale);
+  EXPECT_EQ(row(1.9438).cause, Cause::kUnit);
+  EXPECT_THAT(says(row(1.9438)), ::testing::HasSubstr("knots taken for m/s"));
+  EXPECT_FALSE(advice_of(row(0.8)).empty());
   // What the reconstruction found of the pitot tube, in pressure, is not held against it.
-  EXPECT_EQ(
-      circling_row("airspeed against ground velocity", {.scale = std::sqrt(1.2), .gust = 0.05}, {"pitot_scale", 0.2})
-          .row.outcome,
-      Outcome::kPassed);
+  const CheckedFlight taken_off = circled({.scale = std::sqrt(1.2), .gust = 0.05}, {"pitot_scale", 0.2});
+  EXPECT_EQ(row_in(taken_off, Check::kAirspeedScale, "airspeed").outcome, Outcome::kPassed);
+}
+
+// A scale that is known to be beyond the limit is, though its upper end of three standard errors is not.
+TEST(AirDataEvidence, JudgesAScaleThatIsKnownByItsEstimate) {
+  for (const double gust : {0.2, 0.4}) {
+    const Evidence row = row_in(circled({.scale = 0.973, .gust = gust}), Check::kAirspeedScale, "airspeed");
+    if (!(row.sigma < 0.008)) continue;
+    EXPECT_EQ(row.outcome, Outcome::kCare) << says(row);
+    EXPECT_EQ(row.cause, Cause::kScale);
+  }
+  const Evidence within = row_in(circled({.scale = 0.99, .gust = 0.05}), Check::kAirspeedScale, "airspeed");
+  EXPECT_EQ(within.outcome, Outcome::kPassed) << says(within);
 }
 
 TEST(AirDataEvidence, SaysHowWellGustsLetTheScaleBeVerified) {
-  const FlightEvidence gusty = circling_row("airspeed against ground velocity", {.gust = 1.5});
-  EXPECT_EQ(gusty.row.outcome, Outcome::kNotVerified) << gusty.row.text;
-  EXPECT_THAT(gusty.row.text, ::testing::HasSubstr("verified to no better than"));
-  EXPECT_GT(gusty.doubt.value().scale, 0.01);
+  const CheckedFlight gusty = circled({.gust = 1.5});
+  const Evidence row = row_in(gusty, Check::kAirspeedScale, "airspeed");
+  EXPECT_EQ(row.outcome, Outcome::kNotVerified) << says(row);
+  EXPECT_EQ(row.cause, Cause::kNoise);
+  EXPECT_GT(doubt_about(gusty.doubts, FlightSignal::kAirspeed), 0.01);
 }
 
 TEST(AirDataEvidence, GradesTheZeroOfAVane) {
   const auto row = [](double bias, double taken_off = 0.0) {
-    return circling_row("alpha vane against inertial angle", {.alpha_bias = bias, .gust = 0.05},
-                        {"alpha_bias", taken_off});
+    return row_in(circled({.alpha_bias = bias, .gust = 0.05}, {"alpha_bias", taken_off}), Check::kVaneAngle, "alpha");
   };
-  EXPECT_EQ(row(0.0).row.outcome, Outcome::kNotVerified) << row(0.0).row.text;
-  EXPECT_EQ(row(3.0 * kDegree).row.outcome, Outcome::kCare) << row(3.0 * kDegree).row.text;
-  EXPECT_NEAR(row(3.0 * kDegree).row.value, 3.0, 0.2);
-  EXPECT_EQ(row(8.0 * kDegree).row.outcome, Outcome::kFailed);
-  EXPECT_EQ(row(3.0 * kDegree, 3.0 * kDegree).row.outcome, Outcome::kNotVerified) << "found and taken off";
-  EXPECT_THAT(row(2.0).row.text, ::testing::HasSubstr("over 90 deg is no flow angle"));
-  EXPECT_FALSE(row(0.0).bears_on(Coefficient::kCn));
+  EXPECT_EQ(row(0.0).outcome, Outcome::kNotVerified) << says(row(0.0));
+  EXPECT_EQ(row(3.0 * kDegree).outcome, Outcome::kCare) << says(row(3.0 * kDegree));
+  EXPECT_NEAR(row(3.0 * kDegree).value, 3.0, 0.2);
+  EXPECT_EQ(row(8.0 * kDegree).outcome, Outcome::kFailed);
+  EXPECT_EQ(row(3.0 * kDegree, 3.0 * kDegree).outcome, Outcome::kNotVerified) << "found and taken off";
+  EXPECT_EQ(row(2.0).cause, Cause::kUnit);
+  EXPECT_FALSE(affects(row(0.0), Coefficient::kCn));
 }
 
 // Without gyro and accelerometer nothing is compared, which is no alarm.
 TEST(AirDataEvidence, SaysThatTheScaleOfAVaneIsNotVerified) {
-  for (const char* name : {"scale of the alpha vane", "scale of the beta vane"}) {
-    const FlightEvidence row = circling_row(name, {});
-    EXPECT_EQ(row.row.outcome, Outcome::kNotVerified);
-    EXPECT_NEAR(row.doubt.value().scale, 0.2, 1e-12) << "what is left is the prior";
+  const CheckedFlight checked = circled({});
+  for (const auto& [name, signal] : {std::pair{"alpha", FlightSignal::kAlpha}, {"beta", FlightSignal::kBeta}}) {
+    EXPECT_EQ(row_in(checked, Check::kVaneScale, name).outcome, Outcome::kNotVerified);
+    EXPECT_NEAR(doubt_about(checked.doubts, signal), 0.2, 1e-12) << "what is left is the prior";
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "tests/aircraft/campaign/campaign.hpp"
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -15,6 +16,11 @@ namespace {
 using aircraft::testing::campaign_flight;
 using aircraft::testing::fault;
 using aircraft::testing::Identified;
+using estimation::Cause;
+using estimation::Check;
+using estimation::Evidence;
+using estimation::Outcome;
+using estimation::row_of;
 using ::testing::HasSubstr;
 
 double largest_speed(const Recording& recording) {
@@ -34,7 +40,7 @@ TEST(ContradictedFlight, IsGradedNoWithTheSensorThatIsWrongAndIdentifiesNothing)
                                     {"gyro in deg/s", "gyro"},
                                     {"attitude in degrees", "roll"},
                                     {"velocity in km/h", "ground velocity"},
-                                    {"north and east swapped", "vel_north"}}) {
+                                    {"north and east swapped", "ground velocity"}}) {
     FlightStudy faulty = study;
     fault(name).apply(faulty);
     const Identified flight = aircraft::testing::identified(faulty);
@@ -46,9 +52,9 @@ TEST(ContradictedFlight, IsGradedNoWithTheSensorThatIsWrongAndIdentifiesNothing)
     EXPECT_EQ(estimate.judgement.parameters.grade, estimation::Grade::kNo) << name;
     EXPECT_TRUE(estimate.parameters.empty()) << name;
     EXPECT_THAT(estimate.verdict, HasSubstr("skipped: CL, CD, CY, Cl, Cm, Cn"));
-    const estimation::Evidence& row = estimate.evidence.front();
-    EXPECT_EQ(row.name, "dead reckoning");
-    EXPECT_EQ(row.about, about) << name << ": " << row.text;
+    const Evidence& row = estimate.evidence.front();
+    EXPECT_EQ(row.check, Check::kDeadReckoning);
+    EXPECT_EQ(row.about, about) << name << ": " << says(row);
     EXPECT_LT(largest_speed(analysis.flights.front().reconstruction.smoothed),
               1.2 * largest_speed(faulty.mapped.recording) + 10.0)
         << name;
@@ -98,16 +104,18 @@ TEST(ContradictedFlight, RowIsAboutTheSensorThatWasRefusedWhereNoOtherIsFoundWro
   contradiction.channel = "vel_down";
   contradiction.against = "accelerometer and attitude";
   contradiction.span = {30.0, 45.0};
-  const FlightEvidence alone = contradiction_row(contradiction, 10.0, {});
-  EXPECT_EQ(alone.row.about, "vel_down");
-  EXPECT_EQ(alone.row.outcome, estimation::Outcome::kFailed);
-  EXPECT_THAT(alone.row.advice, HasSubstr("data.to = 30"));
-  const std::vector<FlightEvidence> causes{
-      {.row = {.name = "scale of the alpha vane", .about = "alpha", .outcome = estimation::Outcome::kFailed}},
-      {.row = {.name = "gain of the gyro", .about = "gyro", .outcome = estimation::Outcome::kPassed}},
-      {.row = {
-           .name = "bias of the accelerometer", .about = "accelerometer", .outcome = estimation::Outcome::kFailed}}};
-  EXPECT_EQ(contradiction_row(contradiction, 10.0, causes).row.about, "accelerometer");
+  const Evidence alone = contradiction_row(contradiction, 10.0, {});
+  EXPECT_EQ(alone.about, "vel_down");
+  EXPECT_EQ(alone.outcome, Outcome::kFailed);
+  EXPECT_EQ(alone.cause, Cause::kNone);
+  EXPECT_THAT(advice_of(alone), HasSubstr("data.to = 30"));
+  const std::vector<Evidence> causes{row_of(Check::kVaneScale, "alpha", Outcome::kFailed),
+                                     row_of(Check::kSensorGain, "gyro", Outcome::kPassed),
+                                     row_of(Check::kAccelerometerBias, "accelerometer", Outcome::kFailed)};
+  EXPECT_EQ(contradiction_row(contradiction, 10.0, causes).about, "accelerometer");
+  // An attitude that leaves the gyro has no cause in the accelerometer.
+  contradiction.by_gyro = true;
+  EXPECT_EQ(contradiction_row(contradiction, 10.0, causes).about, "vel_down");
 }
 
 }  // namespace

@@ -6,10 +6,13 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 
 namespace veridyn::aircraft {
 namespace {
 
+using estimation::Check;
+using estimation::Evidence;
 using estimation::Outcome;
 
 /// A minute at 20 m/s; alpha moves by 2 deg root mean square.
@@ -36,38 +39,40 @@ struct UnfeltFlight {
       recording.add(make_channel(name, "rad", time, constant(0.0)));
     segments.airborne = segments.longitudinal.excited = {{0.0, 60.0}};
   }
-  [[nodiscard]] std::vector<FlightEvidence> rows() const {
-    return missing_sensor_evidence(recording, reconstruction, segments);
+  [[nodiscard]] CheckedFlight checked() const { return missing_sensor_evidence(recording, reconstruction, segments); }
+  [[nodiscard]] std::vector<Evidence> rows() const { return checked().rows; }
+  [[nodiscard]] Evidence row(Check check) const {
+    const std::vector<Evidence> all = rows();
+    return *std::ranges::find(all, check, &Evidence::check);
   }
-  [[nodiscard]] FlightEvidence row(const std::string& name) const {
-    const std::vector<FlightEvidence> all = rows();
-    return *std::ranges::find(all, name, [](const FlightEvidence& e) { return e.row.name; });
+  [[nodiscard]] SignalDoubt doubt(FlightSignal signal) const {
+    const std::vector<SignalDoubt> all = checked().doubts;
+    return *std::ranges::find(all, signal, &SignalDoubt::signal);
   }
 };
 
 TEST(MissingSensorEvidence, SaysByHowMuchTheWindLeavesTheAirspeedInDoubt) {
-  const FlightEvidence sure = UnfeltFlight(0.1, 0.001).row("no airspeed sensor");
-  EXPECT_NEAR(sure.row.value, 0.1 / 20.0, 1e-12);
-  EXPECT_EQ(sure.row.outcome, Outcome::kNotVerified);
-  ASSERT_TRUE(sure.doubt.has_value());
-  EXPECT_TRUE(sure.doubt->in_interval);
-  EXPECT_NEAR(sure.doubt->scale, 0.1 / 20.0, 1e-12);
-  EXPECT_EQ(UnfeltFlight(0.4, 0.001).row("no airspeed sensor").row.outcome, Outcome::kCare);
-  EXPECT_EQ(UnfeltFlight(1.0, 0.001).row("no airspeed sensor").row.outcome, Outcome::kFailed);
+  const UnfeltFlight sure(0.1, 0.001);
+  EXPECT_NEAR(sure.row(Check::kNoAirspeedSensor).value, 0.1 / 20.0, 1e-12);
+  EXPECT_EQ(sure.row(Check::kNoAirspeedSensor).outcome, Outcome::kNotVerified);
+  EXPECT_TRUE(sure.doubt(FlightSignal::kAirspeed).in_interval);
+  EXPECT_NEAR(sure.doubt(FlightSignal::kAirspeed).scale, 0.1 / 20.0, 1e-12);
+  EXPECT_EQ(UnfeltFlight(0.4, 0.001).row(Check::kNoAirspeedSensor).outcome, Outcome::kCare);
+  EXPECT_EQ(UnfeltFlight(1.0, 0.001).row(Check::kNoAirspeedSensor).outcome, Outcome::kFailed);
 }
 
 // Unknown over known variance: (0.05/2)^2, (0.15/2)^2, (1/2)^2.
 TEST(MissingSensorEvidence, ComparesUnfeltGustsWithManoeuvres) {
-  const FlightEvidence calm = UnfeltFlight(0.1, 0.05 * kDegree).row("no alpha vane");
-  EXPECT_NEAR(calm.row.value, 0.000625, 3e-6);
-  EXPECT_EQ(calm.row.outcome, Outcome::kNotVerified);
-  EXPECT_NEAR(calm.doubt->zero, 0.1 / 20.0, 1e-12);
-  EXPECT_EQ(UnfeltFlight(0.1, 0.15 * kDegree).row("no alpha vane").row.outcome, Outcome::kCare);
-  const FlightEvidence gusty = UnfeltFlight(0.1, 1.0 * kDegree).row("no alpha vane");
-  EXPECT_EQ(gusty.row.outcome, Outcome::kFailed);
-  EXPECT_TRUE(gusty.bears_on(Coefficient::kCm));
-  EXPECT_FALSE(gusty.bears_on(Coefficient::kCn));
-  EXPECT_FALSE(gusty.row.bears_on.contains(estimation::Purpose::kPrediction)) << "it may predict in such gusts";
+  const UnfeltFlight calm(0.1, 0.05 * kDegree);
+  EXPECT_NEAR(calm.row(Check::kNoVane).value, 0.000625, 3e-6);
+  EXPECT_EQ(calm.row(Check::kNoVane).outcome, Outcome::kNotVerified);
+  EXPECT_NEAR(calm.doubt(FlightSignal::kAlpha).zero, 0.1 / 20.0, 1e-12);
+  EXPECT_EQ(UnfeltFlight(0.1, 0.15 * kDegree).row(Check::kNoVane).outcome, Outcome::kCare);
+  const Evidence gusty = UnfeltFlight(0.1, 1.0 * kDegree).row(Check::kNoVane);
+  EXPECT_EQ(gusty.outcome, Outcome::kFailed);
+  EXPECT_TRUE(affects(gusty, Coefficient::kCm));
+  EXPECT_FALSE(affects(gusty, Coefficient::kCn));
+  EXPECT_FALSE(gusty.bears_on.contains(estimation::Purpose::kPrediction)) << "it may predict in such gusts";
 }
 
 TEST(MissingSensorEvidence, HasNoRowOfWhatIsThere) {
@@ -83,10 +88,10 @@ TEST(MissingSensorEvidence, AskNothingOfAFilterThatDidNotRunButTheNoiseOfTheAirs
   EXPECT_TRUE(flight.rows().empty());
   flight.recording = {};
   ASSERT_EQ(flight.rows().size(), 2U);
-  EXPECT_EQ(flight.rows().front().row.name, "ground velocity");
+  EXPECT_EQ(flight.rows().front().check, Check::kNoGroundVelocity);
   UnfeltFlight noisy(0.4, 1.0);
   noisy.reconstruction.filter = FilterKind::kNone;
-  EXPECT_EQ(noisy.row("noise of the airspeed").row.outcome, Outcome::kCare);
+  EXPECT_EQ(noisy.row(Check::kAirspeedNoise).outcome, Outcome::kCare);
 }
 
 }  // namespace

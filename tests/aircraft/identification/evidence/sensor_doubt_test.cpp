@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "veridyn/estimation/judgement/check.hpp"
+
 namespace veridyn::aircraft {
 namespace {
 
@@ -60,12 +62,12 @@ TEST(DoubtRow, NamesWhatIsInMoreDoubtThanItsNoise) {
   const estimation::Evidence row = doubt_row("CL", parameters(), Eigen::Vector2d(0.4, 0.1));
   EXPECT_EQ(row.outcome, Outcome::kNotVerified);
   EXPECT_NEAR(row.value, 8.0, 1e-12);
-  EXPECT_THAT(row.text, HasSubstr("CL_alpha by 0.4"));
-  EXPECT_THAT(row.text, Not(HasSubstr("CL_q")));
-  EXPECT_FALSE(row.advice.empty());
+  EXPECT_THAT(says(row), HasSubstr("CL_alpha by 0.4"));
+  EXPECT_THAT(says(row), Not(HasSubstr("CL_q")));
+  EXPECT_FALSE(advice_of(row).empty());
   const estimation::Evidence calm = doubt_row("CL", parameters(), Eigen::Vector2d(0.04, 0.1));
   EXPECT_EQ(calm.outcome, Outcome::kPassed);
-  EXPECT_TRUE(calm.advice.empty());
+  EXPECT_TRUE(advice_of(calm).empty());
 }
 
 TEST(WeakByDoubt, MarksWhatWouldBeWeakByItsInterval) {

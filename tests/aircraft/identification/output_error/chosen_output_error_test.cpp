@@ -9,6 +9,7 @@
 #include "tests/aircraft/rescaled_subject.hpp"
 #include "veridyn/aircraft/aircraft_study.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -117,12 +118,12 @@ TEST(ChosenOutputError, CovarianceHoldsWhatTheCoefficientsOfARunShare) {
 TEST(ChosenOutputError, IsComparedWithTheRegressionThatItStartedFrom) {
   const FlightAnalysis& a = calm();
   const CoefficientResult& cm = coefficient(a, Coefficient::kCm);
-  const auto has_row = [&](const char* name) {
-    return std::ranges::find(cm.evidence, name, &estimation::Evidence::name) != cm.evidence.end();
+  const auto has_row = [&](estimation::Check check) {
+    return std::ranges::find(cm.evidence, check, &estimation::Evidence::check) != cm.evidence.end();
   };
-  EXPECT_TRUE(has_row("agreement with regression"));
-  EXPECT_TRUE(has_row("agreement of the flight's parts"));
-  EXPECT_FALSE(has_row("agreement of OLS")) << "says nothing of what was chosen";
+  EXPECT_TRUE(has_row(estimation::Check::kAgreesWithRegression));
+  EXPECT_TRUE(has_row(estimation::Check::kPartsOfFlight));
+  EXPECT_FALSE(has_row(estimation::Check::kOlsAgreement)) << "says nothing of what was chosen";
   const auto group = std::ranges::find(a.groups, "Cm", &estimation::ParameterGroup::name);
   EXPECT_EQ(group->method, "output error");
   int methods = 0;

@@ -9,6 +9,7 @@
 
 #include "tests/aircraft/pitching_flight.hpp"
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -25,7 +26,8 @@ CoefficientResult cm_of_set(const Subject& subject, std::span<const PreparedFlig
 }
 
 estimation::Evidence scatter_row_of(const CoefficientResult& result) {
-  const auto row = std::ranges::find(result.evidence, "scatter between flights", &estimation::Evidence::name);
+  const auto row =
+      std::ranges::find(result.evidence, estimation::Check::kScatterBetweenFlights, &estimation::Evidence::check);
   return row == result.evidence.end() ? estimation::Evidence{} : *row;
 }
 
@@ -34,7 +36,7 @@ TEST(FlightSet, OfFlightsAlikeIsOneRegression) {
   const Subject subject = builtin_subject("thor");
   const std::vector<PreparedFlight> flights = pitching_set(subject, 4, 0.0, 2);
   const CoefficientResult all = cm_of_set(subject, flights), one = cm_of_set(subject, {flights.data(), 1});
-  EXPECT_EQ(scatter_row_of(all).outcome, estimation::Outcome::kPassed) << scatter_row_of(all).text;
+  EXPECT_EQ(scatter_row_of(all).outcome, estimation::Outcome::kPassed) << says(scatter_row_of(all));
   EXPECT_FALSE(one.scatter.has_value());
   EXPECT_EQ(all.flight_estimates.size(), 4u);
   EXPECT_EQ(all.flight_fits.size(), 4u);
@@ -50,7 +52,7 @@ TEST(FlightSet, OfFlightsThatDifferIsTheirMean) {
   const CoefficientResult all = cm_of_set(subject, flights);
   const estimation::Evidence row = scatter_row_of(all);
   EXPECT_EQ(row.outcome, estimation::Outcome::kCare);
-  EXPECT_THAT(row.text, HasSubstr("from the scatter of 4"));
+  EXPECT_THAT(says(row), HasSubstr("from the scatter of 4"));
   ASSERT_EQ(all.flight_estimates.size(), 4u);
   double sum = 0.0;
   for (const FlightEstimate& e : all.flight_estimates)
@@ -102,18 +104,19 @@ TEST(FlightSet, NamesWhatGivesNothing) {
   std::vector<PreparedFlight> flights = pitching_set(subject, 3, 0.0, 5);
   for (PreparedFlight& flight : flights) {
     flight.aligned.recording.add(make_channel("gyro_x", "rad/s", make_time_base({5.0, 105.0}), {0.0, 0.0}));
-    flight.recording_evidence = {{{.name = "row", .about = "gyro", .text = "the gyro is right"}}};
+    flight.recording_evidence = {
+        estimation::row_of(estimation::Check::kGyroDelay, "gyro", estimation::Outcome::kPassed)};
   }
   flights[1].reconstruction.contradiction.emplace();
   flights[1].reconstruction.contradiction->statement = "vel_down contradicts the accelerometer";
   flights[2].segments.longitudinal.excited.clear();
   flights[2].segments.lateral.excited.clear();
   const std::vector<PreparedFlight> set = side_by_side(flights);
-  EXPECT_EQ(set[0].recording_evidence[0].row.text, "flight1.csv: the gyro is right");
+  EXPECT_EQ(set[0].recording_evidence[0].about, "flight1.csv: gyro");
   ASSERT_EQ(set[1].recording_evidence.size(), 1u);
-  EXPECT_EQ(set[1].recording_evidence[0].row.text, "flight2.csv is left out: vel_down contradicts the accelerometer");
-  EXPECT_EQ(set[1].recording_evidence[0].row.outcome, estimation::Outcome::kCare);
-  EXPECT_EQ(set[2].recording_evidence.back().row.name, "nothing excited");
+  EXPECT_EQ(says(set[1].recording_evidence[0]), "flight2.csv is left out: vel_down contradicts the accelerometer");
+  EXPECT_EQ(set[1].recording_evidence[0].outcome, estimation::Outcome::kCare);
+  EXPECT_EQ(set[2].recording_evidence.back().check, estimation::Check::kNothingExcited);
   EXPECT_EQ(set[0].shift_s, 0.0);
   EXPECT_EQ(set[1].shift_s, 100.0 + kBetweenFlights_s);
   const std::vector<estimation::RecordingUse> uses = recording_uses(set, false);

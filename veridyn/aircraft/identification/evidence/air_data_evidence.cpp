@@ -1,22 +1,22 @@
 #include "veridyn/aircraft/identification/evidence/air_data_evidence.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/recording/sensor_matrix.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
+#include "veridyn/recording/consistency.hpp"
 
 namespace veridyn::aircraft {
 namespace {
 
+using estimation::Cause;
+using estimation::Check;
 using estimation::Evidence;
-using estimation::kAllPurposes;
+using estimation::info_of;
 using estimation::kBeyondChance;
 using estimation::Outcome;
-using estimation::outcome_of;
-using estimation::Tolerance;
+using estimation::row_of;
 
 /// Standard deviations of air data of which nothing is known but that they were installed with care: position error of
 /// a pitot tube, upwash at a vane ahead of a wing, a vane aligned by eye.
@@ -24,111 +24,66 @@ constexpr double kUnverifiedAirspeed = 0.1;
 constexpr double kUnverifiedVane = 0.2;
 constexpr double kUnverifiedZero = 3.0 * kDegree;
 
-FlightEvidence airspeed_row(const Determined& scale) {
-  constexpr double kCare = 0.02;
-  /// A scale that is off by so much changes coefficients by twice as much.
+Evidence airspeed_row(const Determined& scale) {
+  /// An error of 1 % changes coefficients by 2 %: a scale that is not known to that is not verified.
   constexpr double kWellDetermined = 0.01;
   constexpr double kUndetermined = 0.1;
-  Evidence row{.name = "airspeed against ground velocity",
-               .about = "airspeed",
-               .value = scale.value,
-               .limit = kCare,
-               .scale = "reading over truth",
-               .bears_on = kAllPurposes};
-  row.outcome = outcome_of(scale.value, scale.sigma, Tolerance::about(1.0, kCare, 0.15));
-  const SignalDoubt doubt{.signal = FlightSignal::kAirspeed, .scale = doubt_of(scale, 1.0, kUnverifiedAirspeed)};
-  if (row.outcome == Outcome::kPassed && scale.sigma > kWellDetermined) {
-    row.outcome = Outcome::kNotVerified;
-    row.text =
-        scale.sigma > kUndetermined
-            ? std::string(
-                  "the scale of the airspeed is not verified: the headings flown do not separate it from the wind")
-            : fmt::format(
-                  "the scale of the airspeed is verified to no better than {:.0f} % by the headings flown "
-                  "({:.3f} +- {:.3f}); an error of 1 % changes coefficients by 2 %",
-                  100.0 * kBeyondChance * scale.sigma, scale.value, scale.sigma);
-    row.advice = "fly several full circles, or calibrate the pitot tube";
-    return {std::move(row), {}, doubt};
+  const estimation::Tolerance& limits = info_of(Check::kAirspeedScale).tolerance;
+  Evidence row = row_of(Check::kAirspeedScale, "airspeed", scale.value, scale.sigma);
+  // A scale that is known is judged by its estimate: what is beyond the limit and beyond chance is an error.
+  const bool known_to_be_off = scale.sigma <= kWellDetermined &&
+                               std::abs(scale.value - 1.0) > kBeyondChance * scale.sigma &&
+                               (scale.value < limits.low || scale.value > limits.high);
+  if (row.passed() && (known_to_be_off || scale.sigma > kWellDetermined)) {
+    row = row_of(Check::kAirspeedScale, "airspeed", known_to_be_off ? Outcome::kCare : Outcome::kNotVerified);
+    row.value = scale.value;
+    row.sigma = scale.sigma;
+    row.limit = scale.value < 1.0 ? limits.low : limits.high;
+    if (!known_to_be_off) row.cause = scale.sigma > kUndetermined ? Cause::kExcitation : Cause::kNoise;
   }
-  const std::string unit =
-      row.outcome == Outcome::kPassed ? std::string() : recording::mistaken_unit(std::abs(scale.value));
-  row.text = fmt::format(
-      "over the headings flown the airspeed reads {:.3f} +- {:.3f} times what ground velocity and a "
-      "steady wind say{}{}",
-      scale.value, scale.sigma, unit.empty() ? "" : ": ", unit);
-  if (row.outcome != Outcome::kPassed)
-    row.advice = "check unit and calibration of the pitot tube, or let the reconstruction estimate pitot_scale";
-  return {std::move(row), {}, doubt};
+  std::string unit;
+  if (!row.passed()) {
+    // Of an airspeed, or of the dynamic pressure that it was made of.
+    const double size = std::abs(scale.value);
+    unit = recording::mistaken_unit(parse_unit("m/s"), size);
+    if (unit.empty()) unit = recording::mistaken_unit(parse_unit("Pa"), size * size);
+  }
+  if (!row.passed()) row.cause = unit.empty() ? Cause::kScale : Cause::kUnit;
+  return std::move(row).with("unit", unit).with("three_sigma", kBeyondChance * scale.sigma);
 }
 
-/// The row of a vane with what it leaves in doubt.
-FlightEvidence of_vane(Evidence row, const std::string& name, double scale, double zero) {
-  const bool alpha = name == "alpha";
-  return {std::move(row), alpha ? by_alpha() : by_beta(),
-          SignalDoubt{.signal = alpha ? FlightSignal::kAlpha : FlightSignal::kBeta, .scale = scale, .zero = zero}};
-}
-
-FlightEvidence vane_row(const VaneFit& fit, const std::string& name) {
-  constexpr double kCare = 0.5 * kDegree, kFailed = 5.0 * kDegree;
+Evidence vane_row(const VaneFit& fit, const std::string& name) {
   constexpr double kLargestFlowAngle = 0.5 * kPi;
   const bool impossible = fit.largest_reading > kLargestFlowAngle;
-  Evidence row{.name = fmt::format("{} vane against inertial angle", name),
-               .about = name,
-               .outcome = impossible
-                              ? Outcome::kFailed
-                              : outcome_of(fit.bias.value, fit.bias.sigma, Tolerance::about(0.0, kCare, kFailed)),
-               .value = fit.bias.value / kDegree,
-               .limit = kCare / kDegree,
-               .scale = "deg",
-               .bears_on = kAllPurposes};
-  if (row.outcome == Outcome::kPassed) row.outcome = Outcome::kNotVerified;
-  row.text = impossible ? fmt::format("the {} vane reads up to {:.0f} deg: over 90 deg is no flow angle in flight",
-                                      name, fit.largest_reading / kDegree)
-                        : fmt::format(
-                              "in the mean the {} vane reads {:.2f} +- {:.2f} deg more than attitude, ground velocity "
-                              "and the mean wind imply",
-                              name, fit.bias.value / kDegree, fit.bias.sigma / kDegree);
-  if (!row.passed())
-    row.advice = fmt::format("check unit and zero of the vane, or leave it out: reconstruct.without = [\"{}\"]", name);
-  return of_vane(std::move(row), name, 0.0, doubt_of(fit.bias, 0.0, kUnverifiedZero));
+  const double value = fit.bias.value / kDegree, sigma = fit.bias.sigma / kDegree;
+  Evidence row = row_of(Check::kVaneAngle, name, value, sigma);
+  if (impossible || row.outcome == Outcome::kPassed) {
+    // The mean agrees with a mean wind that was found with it: that verifies no zero.
+    const double limit = row.limit;
+    row = row_of(Check::kVaneAngle, name, impossible ? Outcome::kFailed : Outcome::kNotVerified);
+    row.value = value;
+    row.sigma = sigma;
+    row.limit = limit;
+  }
+  if (!row.passed()) row.cause = impossible ? Cause::kUnit : Cause::kZero;
+  row.affects = name == "alpha" ? kByAlpha : kByBeta;
+  return std::move(row).with("largest", fit.largest_reading);
 }
 
-FlightEvidence slope_row(const std::optional<VaneSlope>& fit, const std::string& name) {
-  constexpr double kCare = 0.1, kFailed = 0.4;
+Evidence slope_row(const std::optional<VaneSlope>& fit, const std::string& name) {
   /// An error of the scale is one of the derivatives by the angle.
   constexpr double kVerified = 0.15;
-  Evidence row{.name = fmt::format("scale of the {} vane", name),
-               .about = name,
-               .outcome = Outcome::kNotVerified,
-               .value = fit ? fit->slope.value : kNaN,
-               .limit = kCare,
-               .scale = "reading over angle",
-               .text = fmt::format("the scale of the {} vane is not verified by this recording: the controls do not "
-                                   "move the angle enough",
-                                   name),
-               .bears_on = kAllPurposes,
-               .advice = fmt::format("fly sharp {} doublets, or calibrate the vane in a wind tunnel",
-                                     name == "alpha" ? "elevator" : "rudder")};
-  if (fit) {
-    const double doubt = std::abs(fit->slope.value - 1.0) + kBeyondChance * fit->slope.sigma;
-    row.outcome = outcome_of(fit->slope.value, fit->slope.sigma, Tolerance::about(1.0, kCare, kFailed));
-    const bool passed = row.outcome == Outcome::kPassed;
-    row.text = fmt::format("in manoeuvres the {} vane reads {:.2f} +- {:.2f} times what gyro and accelerometer say{}",
-                           name, fit->slope.value, fit->slope.sigma,
-                           !passed && fit->slope.value < 0.0 ? ": its sign is reversed" : "");
-    if (passed && doubt > kVerified) {
-      row.outcome = Outcome::kNotVerified;
-      row.text += fmt::format(", which verifies its scale to no better than {:.0f} %", 100.0 * doubt);
-    } else if (passed) {
-      row.advice.clear();
-    } else {
-      row.advice = fmt::format(
-          "check sign, unit, scale (upwash) and delay of the vane, or leave it out: reconstruct.without = [\"{}\"]",
-          name);
-    }
+  const double doubt = fit ? std::abs(fit->slope.value - 1.0) + kBeyondChance * fit->slope.sigma : kNaN;
+  Evidence row = fit ? row_of(Check::kVaneScale, name, fit->slope.value, fit->slope.sigma)
+                     : row_of(Check::kVaneScale, name, Outcome::kNotVerified);
+  if (fit && row.passed() && doubt > kVerified) {
+    row = row_of(Check::kVaneScale, name, Outcome::kNotVerified);
+    row.value = fit->slope.value;
+    row.sigma = fit->slope.sigma;
   }
-  const std::optional<Determined> slope = fit ? std::optional(fit->slope) : std::nullopt;
-  return of_vane(std::move(row), name, doubt_of(slope, 1.0, kUnverifiedVane), 0.0);
+  row.cause = !fit ? Cause::kExcitation : row.passed() ? Cause::kNone : row.value < 0.0 ? Cause::kSign : Cause::kScale;
+  row.affects = name == "alpha" ? kByAlpha : kByBeta;
+  return std::move(row).with("doubt", doubt).with("control", name == "alpha" ? "elevator" : "rudder");
 }
 
 /// The air data as the reconstruction took them: without the errors that it estimated and took off.
@@ -152,24 +107,33 @@ double doubt_of(const std::optional<Determined>& measured, double nominal, doubl
   return std::hypot(weight * (measured->value - nominal), std::sqrt(weight * variance));
 }
 
-std::vector<FlightEvidence> air_data_evidence(const Recording& recording, const Reconstruction& reconstruction,
-                                              bool airspeed_is_true, const Segments& segments) {
-  std::vector<FlightEvidence> rows;
+CheckedFlight air_data_evidence(const Recording& recording, const Reconstruction& reconstruction, bool airspeed_is_true,
+                                const Segments& segments) {
+  CheckedFlight found;
   const Channel* density = reconstruction.smoothed.find("air_density");
-  if (density == nullptr) return rows;
+  if (density == nullptr) return found;
   const AirDataConsistency air =
       corrected(air_data_consistency(recording, *density, airspeed_is_true, segments.airborne), reconstruction);
-  if (air.airspeed_scale) rows.push_back(airspeed_row(*air.airspeed_scale));
-  if (air.alpha) {
-    rows.push_back(vane_row(*air.alpha, "alpha"));
-    rows.push_back(
-        slope_row(alpha_slope(recording, *density, airspeed_is_true, segments.longitudinal.excited), "alpha"));
+  if (air.airspeed_scale) {
+    found.add(airspeed_row(*air.airspeed_scale));
+    found.doubts.push_back(
+        {.signal = FlightSignal::kAirspeed, .scale = doubt_of(air.airspeed_scale, 1.0, kUnverifiedAirspeed)});
   }
-  if (air.beta) {
-    rows.push_back(vane_row(*air.beta, "beta"));
-    rows.push_back(slope_row(beta_slope(recording, *density, airspeed_is_true, segments.lateral.excited), "beta"));
-  }
-  return rows;
+  const auto vane = [&](const VaneFit& fit, const std::optional<VaneSlope>& slope, const char* name,
+                        FlightSignal signal) {
+    found.add(vane_row(fit, name));
+    found.doubts.push_back({.signal = signal, .zero = doubt_of(fit.bias, 0.0, kUnverifiedZero)});
+    found.add(slope_row(slope, name));
+    const std::optional<Determined> scale = slope ? std::optional(slope->slope) : std::nullopt;
+    found.doubts.push_back({.signal = signal, .scale = doubt_of(scale, 1.0, kUnverifiedVane)});
+  };
+  if (air.alpha)
+    vane(*air.alpha, alpha_slope(recording, *density, airspeed_is_true, segments.longitudinal.excited), "alpha",
+         FlightSignal::kAlpha);
+  if (air.beta)
+    vane(*air.beta, beta_slope(recording, *density, airspeed_is_true, segments.lateral.excited), "beta",
+         FlightSignal::kBeta);
+  return found;
 }
 
 }  // namespace veridyn::aircraft

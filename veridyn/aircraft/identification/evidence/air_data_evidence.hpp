@@ -1,9 +1,8 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
-#include "veridyn/aircraft/identification/evidence/flight_evidence.hpp"
+#include "veridyn/aircraft/identification/evidence/checked_flight.hpp"
 #include "veridyn/aircraft/identification/signals/segments.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct.hpp"
 #include "veridyn/aircraft/sensors/air_data_consistency.hpp"
@@ -13,9 +12,8 @@ namespace veridyn::aircraft {
 /// Does air data agree with ground velocity, attitude, gyro and accelerometer? Rows of the airspeed's scale and of zero
 /// and scale of each vane; each with what it leaves in doubt. Errors that the reconstruction estimated and took off are
 /// taken off here too. No rows without the channels that it takes.
-[[nodiscard]] std::vector<FlightEvidence> air_data_evidence(const Recording& recording,
-                                                            const Reconstruction& reconstruction, bool airspeed_is_true,
-                                                            const Segments& segments);
+[[nodiscard]] CheckedFlight air_data_evidence(const Recording& recording, const Reconstruction& reconstruction,
+                                              bool airspeed_is_true, const Segments& segments);
 
 /// How wrong something that is taken to be `nominal` may be (root mean square), after a measurement of it; none where
 /// the recording has no measurement. `before` is the standard deviation without one: of a normal prior about `nominal`,

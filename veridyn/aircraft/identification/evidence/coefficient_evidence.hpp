@@ -44,10 +44,6 @@ struct CoefficientChecks {
                                                                      const estimation::RegressionComparison& comparison,
                                                                      const IdentifyOptions& options);
 
-/// Why a coefficient is rejected whose residual is more than the sensors' noise: one clause, without its name. The
-/// arguments are those of CoefficientResult.
-[[nodiscard]] std::string unmodelled_text(double error_ratio, double unmodelled_share);
-
 /// The row "scatter between flights": do several flights have the same parameters within their error bars (Cochran's
 /// Q)? With care where they have not: the intervals of `chosen` are then those of the mean of flights like these, from
 /// the scatter. Not verified where no two flights determine the parameters by themselves.
@@ -62,7 +58,7 @@ struct CoefficientChecks {
 /// Are the values those of an aircraft? Lift slope against lifting-line theory of the subject's wing (Helmbold's
 /// formula, within a factor of 2), signs of damping, side force and drag: with care where a value contradicts them by
 /// more than three standard errors, since a wrong sign, unit or scale of a sensor is then more likely than such an
-/// aircraft.
+/// aircraft; a sign that is not determined is not verified.
 [[nodiscard]] std::vector<estimation::Evidence> plausibility(Coefficient coefficient,
                                                              std::span<const estimation::Parameter> parameters,
                                                              const Subject& subject);

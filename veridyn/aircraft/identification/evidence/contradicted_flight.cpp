@@ -1,16 +1,23 @@
 #include "veridyn/aircraft/identification/evidence/contradicted_flight.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <string_view>
+#include <utility>
 
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/recording/grid_signals.hpp"
 #include "veridyn/recording/segments.hpp"
 
 namespace veridyn::aircraft {
 namespace {
+
+using estimation::Cause;
+using estimation::Check;
+using estimation::Evidence;
+using estimation::Outcome;
 
 std::vector<double> recorded_speed(const Recording& recording, const numerics::UniformGrid& grid) {
   const auto on_grid = [&](const char* name) { return recording::on_grid(recording.at(name), grid); };
@@ -27,17 +34,25 @@ std::vector<double> recorded_speed(const Recording& recording, const numerics::U
   return speed;
 }
 
+/// The sensors whose rows may be the cause of dead reckoning.
+enum class Suspect { kGyro, kAttitude, kAccelerometer, kGroundVelocity };
+constexpr std::array<std::pair<std::string_view, Suspect>, 4> kSuspects{
+    {{"gyro", Suspect::kGyro},
+     {"attitude", Suspect::kAttitude},
+     {"accelerometer", Suspect::kAccelerometer},
+     {"ground velocity", Suspect::kGroundVelocity}}};
+
+std::optional<Suspect> suspect_of(const Evidence& row) {
+  const auto found = std::ranges::find(kSuspects, row.about, &std::pair<std::string_view, Suspect>::first);
+  return found == kSuspects.end() ? std::nullopt : std::optional(found->second);
+}
+
 /// Whether a row has found a sensor wrong that the contradiction is about.
-bool is_cause(const FlightEvidence& evidence, const Contradiction& contradiction) {
-  static constexpr std::array<std::string_view, 2> kOfAttitude{"gyro", "attitude"};
-  static constexpr std::array<std::string_view, 3> kOfVelocity{"accelerometer", "attitude", "ground velocity"};
-  if (evidence.row.outcome != estimation::Outcome::kFailed) return false;
-  const auto among = [&](const auto& sensors) {
-    return std::ranges::find(sensors, evidence.row.about) != sensors.end();
-  };
-  if (contradiction.against == "gyro") return among(kOfAttitude);
-  // A wrong gyro turns the attitude away too.
-  return among(kOfVelocity) || evidence.row.about == "gyro";
+bool is_cause(const Evidence& row, const Contradiction& contradiction) {
+  const std::optional<Suspect> suspect = suspect_of(row);
+  if (row.outcome != Outcome::kFailed || !suspect) return false;
+  // A wrong gyro turns the attitude away, and with it the force.
+  return !contradiction.by_gyro || *suspect == Suspect::kGyro || *suspect == Suspect::kAttitude;
 }
 
 }  // namespace
@@ -53,23 +68,20 @@ Segments recorded_flight(const Recording& recording, double min_airspeed_mps) {
   return segments;
 }
 
-FlightEvidence contradiction_row(const Contradiction& contradiction, double limit_s,
-                                 std::span<const FlightEvidence> causes) {
-  const auto cause =
-      std::ranges::find_if(causes, [&](const FlightEvidence& evidence) { return is_cause(evidence, contradiction); });
+Evidence contradiction_row(const Contradiction& contradiction, double limit_s, std::span<const Evidence> causes) {
+  const auto cause = std::ranges::find_if(causes, [&](const Evidence& row) { return is_cause(row, contradiction); });
   const bool named = cause != causes.end();
-  return {{.name = "dead reckoning",
-           .about = named ? cause->row.about : contradiction.channel,
-           .outcome = estimation::Outcome::kFailed,
-           .value = contradiction.span.duration(),
-           .limit = limit_s,
-           .scale = "s",
-           .text = contradiction.statement,
-           .bears_on = estimation::kAllPurposes,
-           .advice = named ? fmt::format("mend what the row \"{}\" says of the {}", cause->row.name, cause->row.about)
-                           : fmt::format("check unit, sign, axes, zero and stamps of {} and of what it contradicts, or "
-                                         "leave out what follows: data.to = {:.0f}",
-                                         contradiction.channel, std::floor(contradiction.span.begin))}};
+  Evidence row =
+      estimation::row_of(Check::kDeadReckoning, named ? cause->about : contradiction.channel, Outcome::kFailed);
+  row.value = contradiction.span.duration();
+  row.limit = limit_s;
+  row.with("statement", contradiction.statement).with("channel", contradiction.channel);
+  row.with("end", std::floor(contradiction.span.begin));
+  if (named) {
+    row.cause = cause->cause == Cause::kNone ? Cause::kScale : cause->cause;
+    row.with("because", std::string(estimation::name_of(*cause)));
+  }
+  return row;
 }
 
 }  // namespace veridyn::aircraft

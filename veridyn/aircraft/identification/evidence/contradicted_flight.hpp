@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "veridyn/aircraft/identification/evidence/flight_evidence.hpp"
+#include "veridyn/aircraft/identification/evidence/checked_flight.hpp"
 #include "veridyn/aircraft/identification/signals/segments.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct.hpp"
 
@@ -15,7 +15,7 @@ namespace veridyn::aircraft {
 
 /// The row of the contradiction. `causes` are the other rows of the recording: where one of them has found the sensor
 /// that is wrong, the row is about that, else about the sensor that was refused. `limit_s`: of refusal.
-[[nodiscard]] FlightEvidence contradiction_row(const Contradiction& contradiction, double limit_s,
-                                               std::span<const FlightEvidence> causes);
+[[nodiscard]] estimation::Evidence contradiction_row(const Contradiction& contradiction, double limit_s,
+                                                     std::span<const estimation::Evidence> causes);
 
 }  // namespace veridyn::aircraft

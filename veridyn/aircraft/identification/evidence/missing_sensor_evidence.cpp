@@ -1,21 +1,22 @@
 #include "veridyn/aircraft/identification/evidence/missing_sensor_evidence.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <span>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/numerics/moments.hpp"
 
 namespace veridyn::aircraft {
 namespace {
 
+using estimation::Cause;
+using estimation::Check;
 using estimation::Evidence;
 using estimation::Outcome;
-using estimation::Purpose;
+using estimation::row_of;
 
 /// Mean, spread and root mean square of a channel over spans; nothing where it has no sample there.
 std::optional<numerics::Moments> moments_of(const Recording& recording, const std::string& name,
@@ -34,68 +35,46 @@ std::optional<numerics::Moments> moments_of(const Recording& recording, const st
 
 bool has_airspeed(const Recording& recording) { return recording.has("airspeed") || recording.has("dynamic_pressure"); }
 
-FlightEvidence ground_velocity_row() {
-  return {{.name = "ground velocity",
-           .about = "ground velocity",
-           .outcome = Outcome::kNotVerified,
-           .value = kNaN,
-           .limit = kNaN,
-           .text = "no ground velocity is recorded: scale of the airspeed, zeros of the vanes, accelerometer and wind "
-                   "cannot be verified, and are taken as right",
-           .bears_on = Purpose::kData | Purpose::kParameters,
-           .advice = "record GNSS velocity, or calibrate pitot tube and vanes"}};
+Evidence missing(Check check, const char* sensor) {
+  Evidence row = row_of(check, sensor, Outcome::kNotVerified);
+  row.cause = Cause::kMissing;
+  return row;
 }
 
-FlightEvidence attitude_row() {
-  return {{.name = "attitude",
-           .about = "attitude",
-           .outcome = Outcome::kNotVerified,
-           .value = kNaN,
-           .limit = kNaN,
-           .text = "no roll and pitch are recorded: gyro and accelerometer cannot be verified against them",
-           .bears_on = Purpose::kData | Purpose::kParameters,
-           .advice = "record the attitude"}};
+/// Of what no sensor measures: by how much it is unknown. What is within the limits is stated all the same.
+Evidence unknown_by(Check check, const std::string& what, double value) {
+  Evidence row = row_of(check, what, value);
+  if (row.outcome == Outcome::kPassed) {
+    const double limit = row.limit;
+    row = row_of(check, what, Outcome::kNotVerified);
+    row.value = value;
+    row.limit = limit;
+  }
+  row.cause = Cause::kMissing;
+  return row;
 }
 
 /// The airspeed is ground speed less wind.
-std::optional<FlightEvidence> airspeed_row(const Reconstruction& reconstruction, const Segments& segments) {
-  constexpr double kCare = 0.01, kFailed = 0.03;
+CheckedFlight airspeed_row(const Reconstruction& reconstruction, const Segments& segments) {
   const Recording& r = reconstruction.smoothed;
   const auto speed = moments_of(r, "airspeed", segments.airborne);
   const auto sigma = moments_of(r, "sigma_airspeed", segments.airborne);
-  if (!speed || !sigma || !(speed->mean() > 0.0)) return std::nullopt;
+  if (!speed || !sigma || !(speed->mean() > 0.0)) return {};
   // Gusts with it: in gusts that no sensor feels the slow wind is found worse than the filter says.
   const double along = sigma->rms() / speed->mean();
-  return FlightEvidence{
-      {.name = "no airspeed sensor",
-       .about = "airspeed",
-       .outcome = along > kFailed ? Outcome::kFailed
-                  : along > kCare ? Outcome::kCare
-                                  : Outcome::kNotVerified,
-       .value = along,
-       .limit = kCare,
-       .scale = "doubt over airspeed",
-       .text =
-           fmt::format("no sensor measures the airspeed: it is the ground speed less a wind that this flight leaves "
-                       "in doubt by {:.0f} % of it, and coefficients by twice as much, which their intervals hold",
-                       100.0 * along),
-       .bears_on = Purpose::kData | Purpose::kParameters,
-       .advice = "record a pitot tube, or fly full circles"},
-      {},
-      SignalDoubt{.signal = FlightSignal::kAirspeed, .scale = along, .in_interval = true}};
+  return {{unknown_by(Check::kNoAirspeedSensor, "airspeed", along)},
+          {{.signal = FlightSignal::kAirspeed, .scale = along, .in_interval = true}}};
 }
 
 /// A flow angle that no vane measures.
-std::optional<FlightEvidence> vane_row(const Reconstruction& reconstruction, const Segments& segments,
-                                       const std::string& name) {
-  constexpr double kCare = 0.003, kFailed = 0.01;
+CheckedFlight vane_row(const Reconstruction& reconstruction, const Segments& segments, const std::string& name) {
   const bool alpha = name == "alpha";
   const Recording& r = reconstruction.smoothed;
   const std::vector<TimeSpan>& excited = (alpha ? segments.longitudinal : segments.lateral).excited;
   const auto angle = moments_of(r, name, excited);
   const auto sigma = moments_of(r, "sigma_" + name, excited);
   const auto speed = moments_of(r, "airspeed", segments.airborne);
-  if (!angle || !sigma || !speed || !(angle->sd() > 0.0)) return std::nullopt;
+  if (!angle || !sigma || !speed || !(angle->sd() > 0.0)) return {};
   // The wind across the path is in doubt for long, gusts are not.
   const auto down = moments_of(r, "sigma_wind_down", segments.airborne);
   const auto north = moments_of(r, "sigma_wind_north", segments.airborne);
@@ -104,69 +83,43 @@ std::optional<FlightEvidence> vane_row(const Reconstruction& reconstruction, con
                         : north && east ? std::sqrt(0.5 * (north->rms() * north->rms() + east->rms() * east->rms()))
                                         : 0.0;
   const double ratio = std::pow(sigma->rms() / angle->sd(), 2.0);
-  Evidence row{.name = fmt::format("no {} vane", name),
-               .about = name,
-               .outcome = ratio > kFailed ? Outcome::kFailed
-                          : ratio > kCare ? Outcome::kCare
-                                          : Outcome::kNotVerified,
-               .value = ratio,
-               .limit = kFailed,
-               .scale = "variance unknown over variance in manoeuvres",
-               .bears_on = Purpose::kParameters};
-  row.text = fmt::format(
-      "no vane measures {}: gusts leave it in doubt by {:.2f} deg, where manoeuvres move it by {:.2f} deg{}", name,
-      sigma->rms() / kDegree, angle->sd() / kDegree,
-      row.outcome == Outcome::kNotVerified
-          ? ""
-          : "; the aircraft answers gusts that no sensor feels, which biases its derivatives unseen");
-  row.advice = fmt::format(
-      "record the {} vane, fly larger manoeuvres in calm air, and say so "
-      "(reconstruct.turbulence = \"none\")",
-      name);
-  return FlightEvidence{std::move(row), alpha ? by_alpha() : by_beta(),
-                        SignalDoubt{.signal = alpha ? FlightSignal::kAlpha : FlightSignal::kBeta,
-                                    .scale = ratio,
-                                    .zero = across / std::max(1.0, speed->mean()),
-                                    .in_interval = true}};
+  Evidence row = unknown_by(Check::kNoVane, name, ratio);
+  row.with("unknown", sigma->rms()).with("moved", angle->sd());
+  row.affects = alpha ? kByAlpha : kByBeta;
+  return {{std::move(row)},
+          {{.signal = alpha ? FlightSignal::kAlpha : FlightSignal::kBeta,
+            .scale = ratio,
+            .zero = across / std::max(1.0, speed->mean()),
+            .in_interval = true}}};
 }
 
 /// Without a filter the noise of the airspeed is in every sample of a coefficient, twice, and of a computed thrust.
-std::optional<FlightEvidence> noise_row(const Reconstruction& reconstruction, const Segments& segments) {
-  constexpr double kCare = 0.015;
+CheckedFlight noise_row(const Reconstruction& reconstruction, const Segments& segments) {
   const auto speed = moments_of(reconstruction.smoothed, "airspeed", segments.airborne);
   const auto sigma = moments_of(reconstruction.smoothed, "sigma_airspeed", segments.airborne);
-  if (!speed || !sigma || !(sigma->rms() > kCare * speed->mean())) return std::nullopt;
-  return FlightEvidence{{.name = "noise of the airspeed",
-                         .about = "airspeed",
-                         .outcome = Outcome::kCare,
-                         .value = sigma->rms() / speed->mean(),
-                         .limit = kCare,
-                         .scale = "noise over airspeed",
-                         .text = fmt::format("no filter averages the airspeed, whose noise is {:.1f} % of it: constant "
-                                             "terms, of drag above all, may be wrong by more than their intervals say",
-                                             100.0 * sigma->rms() / speed->mean()),
-                         .bears_on = Purpose::kParameters,
-                         .advice = "let a filter reconstruct the motion (reconstruct.filter = \"model-free\")"}};
+  if (!speed || !sigma) return {};
+  Evidence row = row_of(Check::kAirspeedNoise, "airspeed", sigma->rms() / speed->mean());
+  if (row.passed()) return {};
+  row.cause = Cause::kNoise;
+  return {{std::move(row)}, {}};
 }
 
 }  // namespace
 
-std::vector<FlightEvidence> missing_sensor_evidence(const Recording& recording, const Reconstruction& reconstruction,
-                                                    const Segments& segments) {
-  std::vector<FlightEvidence> rows;
-  const auto add = [&rows](std::optional<FlightEvidence> row) {
-    if (row) rows.push_back(std::move(*row));
-  };
-  if (!recording.has("vel_north") || !recording.has("vel_east")) rows.push_back(ground_velocity_row());
-  if (!recording.has("roll") || !recording.has("pitch")) rows.push_back(attitude_row());
+CheckedFlight missing_sensor_evidence(const Recording& recording, const Reconstruction& reconstruction,
+                                      const Segments& segments) {
+  CheckedFlight found;
+  if (!recording.has("vel_north") || !recording.has("vel_east"))
+    found.add(missing(Check::kNoGroundVelocity, "ground velocity"));
+  if (!recording.has("roll") || !recording.has("pitch")) found.add(missing(Check::kNoAttitude, "attitude"));
   if (reconstruction.filter == FilterKind::kNone) {
-    add(noise_row(reconstruction, segments));
-    return rows;
+    found.add(noise_row(reconstruction, segments));
+    return found;
   }
-  if (!has_airspeed(recording)) add(airspeed_row(reconstruction, segments));
+  if (!has_airspeed(recording)) found.add(airspeed_row(reconstruction, segments));
   for (const char* vane : {"alpha", "beta"})
-    if (!recording.has(vane)) add(vane_row(reconstruction, segments, vane));
-  return rows;
+    if (!recording.has(vane)) found.add(vane_row(reconstruction, segments, vane));
+  return found;
 }
 
 }  // namespace veridyn::aircraft

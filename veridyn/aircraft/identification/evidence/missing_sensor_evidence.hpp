@@ -1,8 +1,6 @@
 #pragma once
 
-#include <vector>
-
-#include "veridyn/aircraft/identification/evidence/flight_evidence.hpp"
+#include "veridyn/aircraft/identification/evidence/checked_flight.hpp"
 #include "veridyn/aircraft/identification/signals/segments.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct.hpp"
 #include "veridyn/core/recording.hpp"
@@ -20,8 +18,7 @@ namespace veridyn::aircraft {
 ///   the unknown angle's variance to that of the flow angle in manoeuvres, which is the statistic of the row. Beyond 1
 ///   % the parameters of the angle's coefficients are no constants of the aircraft; the constant part of the error
 ///   widens intervals.
-[[nodiscard]] std::vector<FlightEvidence> missing_sensor_evidence(const Recording& recording,
-                                                                  const Reconstruction& reconstruction,
-                                                                  const Segments& segments);
+[[nodiscard]] CheckedFlight missing_sensor_evidence(const Recording& recording, const Reconstruction& reconstruction,
+                                                    const Segments& segments);
 
 }  // namespace veridyn::aircraft

@@ -1,9 +1,8 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
-#include "veridyn/aircraft/identification/evidence/flight_evidence.hpp"
+#include "veridyn/aircraft/identification/evidence/checked_flight.hpp"
 #include "veridyn/aircraft/identification/signals/segments.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct.hpp"
 #include "veridyn/aircraft/sensors/delays.hpp"
@@ -15,10 +14,8 @@ namespace veridyn::aircraft {
 /// sensors against the reconstruction, gusts against their model.
 /// @param delays   what the alignment of the clocks found
 /// @param threads  0: as many as the machine has
-[[nodiscard]] std::vector<FlightEvidence> recording_evidence(const Recording& recording,
-                                                             const Reconstruction& reconstruction,
-                                                             const ReconstructOptions& options,
-                                                             const Segments& segments,
-                                                             std::span<const DelayReport> delays = {}, int threads = 0);
+[[nodiscard]] CheckedFlight recording_evidence(const Recording& recording, const Reconstruction& reconstruction,
+                                               const ReconstructOptions& options, const Segments& segments,
+                                               std::span<const DelayReport> delays = {}, int threads = 0);
 
 }  // namespace veridyn::aircraft

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::aircraft {
@@ -41,7 +42,7 @@ Eigen::MatrixXd doubt_sensitivity(const FlightSignals& signals, std::span<const 
 
 estimation::Evidence doubt_row(const std::string& coefficient, std::span<const Parameter> parameters,
                                const Eigen::VectorXd& doubt) {
-  constexpr double kLimit = 1.0;
+  const double limit = estimation::info_of(estimation::Check::kAirDataDoubt).tolerance.high;
   std::vector<std::string> named;
   double largest = 0.0;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
@@ -49,24 +50,13 @@ estimation::Evidence doubt_row(const std::string& coefficient, std::span<const P
     const double d = doubt(i);
     if (!has_interval(p) || !(p.sigma > 0.0)) continue;
     largest = std::max(largest, d / p.sigma);
-    if (d > kLimit * p.sigma) named.push_back(fmt::format("{} by {:.2g}", p.name, d));
+    if (d > limit * p.sigma) named.push_back(fmt::format("{} by {:.2g}", p.name, d));
   }
-  const bool passed = named.empty();
-  return {.name = "doubt of the air data",
-          .about = coefficient,
-          .outcome = estimation::passed_or(passed, estimation::Outcome::kNotVerified),
-          .value = largest,
-          .limit = kLimit,
-          .scale = "doubt over standard error",
-          .text = passed ? std::string("what this recording leaves in doubt of airspeed and vanes is within the "
-                                       "standard errors")
-                         : fmt::format("intervals take airspeed and vanes as right; as far as this recording verifies "
-                                       "these, there is a doubt (one standard deviation) of {}",
-                                       fmt::join(named, ", ")),
-          .bears_on = estimation::Purpose::kParameters,
-          .advice = passed ? std::string()
-                           : std::string("calibrate pitot tube and vanes, or fly full circles and sharp doublets in "
-                                         "calm air")};
+  estimation::Evidence row = row_of(estimation::Check::kAirDataDoubt, coefficient,
+                                    estimation::passed_or(named.empty(), estimation::Outcome::kNotVerified));
+  row.value = largest;
+  row.limit = limit;
+  return std::move(row).with("parameters", fmt::format("{}", fmt::join(named, ", ")));
 }
 
 std::vector<Parameter> weak_by_doubt(std::vector<Parameter> parameters, const Eigen::VectorXd& doubt) {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "veridyn/aircraft/identification/evidence/flight_evidence.hpp"
+#include "veridyn/aircraft/identification/evidence/checked_flight.hpp"
 #include "veridyn/aircraft/identification/signals/flight_signals.hpp"
 #include "veridyn/estimation/result/parameter.hpp"
 

@@ -59,7 +59,7 @@ RegressionComparison worst_of(std::span<const CoefficientFit> fits, std::span<co
     if (!together.recommends || together.checks.empty()) together.reason = fits[i].comparison.reason;
     together.recommends = true;
     for (estimation::Evidence row : fits[i].comparison.checks) {
-      row.text = fmt::format("{}: {}", flights[i].name, estimation::says(row));
+      row.with("flight", flights[i].name);
       const auto same = std::ranges::find(together.checks, row.check, &estimation::Evidence::check);
       if (same == together.checks.end())
         together.checks.push_back(std::move(row));

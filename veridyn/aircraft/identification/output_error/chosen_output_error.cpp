@@ -9,18 +9,16 @@
 #include "veridyn/aircraft/identification/fit/coefficient_description.hpp"
 #include "veridyn/aircraft/identification/fit/error_variance.hpp"
 #include "veridyn/aircraft/identification/rows/coefficient_rows.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 
 namespace veridyn::aircraft::internal {
 namespace {
 
+using estimation::Check;
 using estimation::Evidence;
-using estimation::Outcome;
 using estimation::Parameter;
 using estimation::ParameterStatus;
 using estimation::RegressionEstimate;
-
-/// The two methods look at the same data: more than this many standard errors apart they contradict each other.
-constexpr double kContradiction = 3.0;
 
 std::vector<Eigen::Index> places_of(const CoefficientModel& model, const AxisOutputError& run) {
   std::vector<Eigen::Index> places;
@@ -86,18 +84,7 @@ Evidence agreement_with_regression(const RegressionEstimate& part, const Regress
     largest = apart;
     which = a.name;
   }
-  const bool passed = largest <= kContradiction;
-  return {.name = "agreement with regression",
-          .outcome = estimation::passed_or(passed, Outcome::kCare),
-          .value = largest,
-          .limit = kContradiction,
-          .scale = "standard errors",
-          .text = passed ? fmt::format("regression gives the same within {:.1f} standard errors", largest)
-                         : fmt::format("in {} it differs from regression by {:.1f} standard errors: turbulence that "
-                                       "the simulation does not have biases the one, noise of the signals the other",
-                                       which, largest),
-          .bears_on = estimation::Purpose::kParameters,
-          .advice = passed ? std::string() : std::string("look at both, or fly in calm air")};
+  return row_of(Check::kAgreesWithRegression, "", largest).with("parameter", which);
 }
 
 }  // namespace

@@ -4,36 +4,28 @@
 
 #include <algorithm>
 
-#include "veridyn/core/constants.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 
 namespace veridyn::aircraft {
 namespace {
 
+using estimation::Check;
+using estimation::Evidence;
 using estimation::Outcome;
-using estimation::Purpose;
+using estimation::row_of;
 
-FlightEvidence left_out(const PreparedFlight& flight) {
-  return {{.name = "flight left out",
-           .about = flight.name,
-           .outcome = Outcome::kCare,
-           .value = kNaN,
-           .limit = kNaN,
-           .text = fmt::format("{} is left out: {}", flight.name, flight.reconstruction.contradiction->statement),
-           .bears_on = Purpose::kData,
-           .advice = fmt::format("analyse {} by itself, and mend it or take it out of the study", flight.name)}};
+Evidence left_out(const PreparedFlight& flight) {
+  return row_of(Check::kFlightLeftOut, flight.name, Outcome::kCare)
+      .with("statement", flight.reconstruction.contradiction->statement);
 }
 
-FlightEvidence nothing_excited(const PreparedFlight& flight) {
-  return {{.name = "nothing excited",
-           .about = flight.name,
-           .outcome = Outcome::kCare,
-           .value = 0.0,
-           .limit = 0.0,
-           .scale = "s excited",
-           .text = fmt::format("{} tells nothing of the coefficients: {}; {}", flight.name,
-                               flight.segments.longitudinal.text, flight.segments.lateral.text),
-           .bears_on = Purpose::kData,
-           .advice = fmt::format("take {} out of the study, or lower segments.min_input", flight.name)}};
+Evidence nothing_excited(const PreparedFlight& flight) {
+  Evidence row = row_of(Check::kNothingExcited, flight.name, Outcome::kCare);
+  row.value = row.limit = 0.0;
+  row.cause = estimation::Cause::kExcitation;
+  return std::move(row)
+      .with("longitudinal", flight.segments.longitudinal.text)
+      .with("lateral", flight.segments.lateral.text);
 }
 
 std::string use_of(const PreparedFlight& flight, bool tried) {
@@ -76,10 +68,8 @@ std::vector<PreparedFlight> side_by_side(std::vector<PreparedFlight> flights) {
     const TimeSpan span = flight.aligned.recording.span();
     flight.shift_s = end - span.begin;
     end += span.duration() + kBetweenFlights_s;
-    for (FlightEvidence& e : flight.recording_evidence) {
-      e.row.about = e.row.about.empty() ? flight.name : of_flight(flight.name, e.row.about);
-      e.row.text = of_flight(flight.name, e.row.text);
-    }
+    for (Evidence& row : flight.recording_evidence)
+      row.about = row.about.empty() ? flight.name : of_flight(flight.name, row.about);
     if (!flight.usable() && any_usable)
       flight.recording_evidence = {left_out(flight)};
     else if (flight.usable() && flight.segments.longitudinal.excited.empty() && flight.segments.lateral.excited.empty())

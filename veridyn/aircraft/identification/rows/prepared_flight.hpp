@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "veridyn/aircraft/identification/evidence/flight_evidence.hpp"
+#include "veridyn/aircraft/identification/evidence/checked_flight.hpp"
 #include "veridyn/aircraft/identification/signals/flight_signals.hpp"
 #include "veridyn/aircraft/identification/signals/segments.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct.hpp"
@@ -22,7 +22,9 @@ struct PreparedFlight {
   Reconstruction reconstruction = {};
   FlightSignals signals = {};
   Segments segments = {};
-  std::vector<FlightEvidence> recording_evidence = {};  ///< does the recording agree with itself and with physics?
+  std::vector<estimation::Evidence> recording_evidence =
+      {};                                ///< does the recording agree with itself and with physics?
+  std::vector<SignalDoubt> doubts = {};  ///< what these checks leave in doubt
 
   /// Whether its motion is known: of a contradicted flight there are neither signals nor excited segments.
   [[nodiscard]] bool usable() const { return !reconstruction.contradiction; }

@@ -8,6 +8,7 @@
 #include "veridyn/aircraft/identification/fit/coefficient_description.hpp"
 #include "veridyn/aircraft/model/estimated_subject.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -40,14 +41,11 @@ CoefficientResult evaluate_coefficient(const CoefficientModel& model, std::span<
   const bool holds = result.holdout_fit.r2 >= least;
   const std::string where = flights_text(result.flight_fits);
   result.verdict = holds ? estimation::GroupVerdict::kIdentified : estimation::GroupVerdict::kRejected;
-  result.evidence = {{.name = "another flight",
-                      .about = name,
-                      .outcome = estimation::passed_or(holds, estimation::Outcome::kFailed),
-                      .value = result.holdout_fit.r2,
-                      .limit = least,
-                      .scale = "R2",
-                      .text = fmt::format("it explains {:.0f} % of the coefficient's variance in {}", explained, where),
-                      .bears_on = estimation::Purpose::kPrediction}};
+  estimation::Evidence row = estimation::row_of(estimation::Check::kAnotherFlight, name,
+                                                estimation::passed_or(holds, estimation::Outcome::kFailed));
+  row.value = result.holdout_fit.r2;
+  row.limit = least;
+  result.evidence = {std::move(row).with("explained", 0.01 * explained).with("flights", where)};
   result.judgement = estimation::judge(result.evidence);
   result.reason = holds ? fmt::format("{} holds: it explains {:.0f} % of {}", name, explained, where)
                         : fmt::format(

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "veridyn/aircraft/identification/signals/measured_coefficients.hpp"
+#include "veridyn/aircraft/model/aero_model.hpp"
+#include "veridyn/estimation/judgement/evidence.hpp"
+
+namespace veridyn::aircraft {
+
+/// The place of a coefficient among the groups of an analysis.
+[[nodiscard]] constexpr std::size_t place_of(Coefficient c) { return static_cast<std::size_t>(c); }
+/// What rests on the alpha vane, and on what moves the aircraft longitudinally.
+inline constexpr estimation::Groups kByAlpha =
+    estimation::Groups::of({place_of(Coefficient::kCL), place_of(Coefficient::kCD), place_of(Coefficient::kCm)});
+/// What rests on the beta vane, and on what moves the aircraft laterally.
+inline constexpr estimation::Groups kByBeta =
+    estimation::Groups::of({place_of(Coefficient::kCY), place_of(Coefficient::kCl), place_of(Coefficient::kCn)});
+/// Nothing.
+inline constexpr estimation::Groups kByNothing = estimation::Groups();
+
+/// Whether a coefficient rests on what was checked.
+[[nodiscard]] inline bool affects(const estimation::Evidence& row, Coefficient c) {
+  return row.affects.contains(place_of(c));
+}
+
+/// How wrong a signal may be, the same in all samples, as far as a recording tells: one standard deviation.
+struct SignalDoubt {
+  FlightSignal signal = FlightSignal::kAirspeed;
+  double scale = 0.0;  ///< of reading over truth
+  double zero = 0.0;   ///< in the signal's unit
+  /// Whether it is part of the interval: of what no sensor measures the reconstruction knows how wrong it may be, while
+  /// a sensor is taken as right.
+  bool in_interval = false;
+
+  /// The coefficients that rest on the signal.
+  [[nodiscard]] estimation::Groups affects() const {
+    if (signal == FlightSignal::kAlpha) return kByAlpha;
+    return signal == FlightSignal::kBeta ? kByBeta : estimation::Groups::all();
+  }
+};
+
+/// What the checks of a flight's recording found, and what they leave in doubt where that has a size.
+struct CheckedFlight {
+  std::vector<estimation::Evidence> rows;
+  std::vector<SignalDoubt> doubts;
+
+  void add(estimation::Evidence row) { rows.push_back(std::move(row)); }
+  void add(CheckedFlight more) {
+    for (estimation::Evidence& row : more.rows) rows.push_back(std::move(row));
+    for (const SignalDoubt& doubt : more.doubts) doubts.push_back(doubt);
+  }
+};
+
+}  // namespace veridyn::aircraft
