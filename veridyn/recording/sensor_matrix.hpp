@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "veridyn/core/units.hpp"
 #include "veridyn/estimation/judgement/check.hpp"
 
 namespace veridyn::recording {
