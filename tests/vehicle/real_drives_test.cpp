@@ -6,6 +6,7 @@
 #include "tests/support/folders.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/vehicle/vehicle_study.hpp"
 
 namespace veridyn::vehicle {
@@ -85,9 +86,10 @@ TEST(RealDrives, HunterIsDrivenOpenLoopOverWholeRuns) {
   EXPECT_LT(yaw_rate.normalised_rmse, 0.2);
   EXPECT_LT(yaw_rate.inside, 0.5);
   EXPECT_NEAR(sure.estimate.validation.at("open_loop.yaw_rate").rmse, yaw_rate.fit.rmse, 1e-12);
-  const auto horizon = std::ranges::find(sure.estimate.evidence, "open loop horizon", &estimation::Evidence::name);
+  const auto horizon =
+      std::ranges::find(sure.estimate.evidence, estimation::Check::kOpenLoopHorizon, &estimation::Evidence::check);
   ASSERT_NE(horizon, sure.estimate.evidence.end());
-  EXPECT_LT(yaw_rate.held, yaw_rate.windows) << horizon->text;
+  EXPECT_LT(yaw_rate.held, yaw_rate.windows) << estimation::says(*horizon);
   estimate.fit["yaw_rate.rmse"] = yaw_rate.fit.rmse * kDegree;
   const VehicleAnalysis widened = driven();
   EXPECT_GT(widened.open_loop.states[0].inside, 0.9);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/estimation/judgement/evidence.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/delay.hpp"
 #include "veridyn/recording/grid_signals.hpp"
@@ -171,7 +172,7 @@ DelayReport shared_delay(std::string group, std::string reference, const std::ve
   const double doubt = in_doubt ? search(doubted).delay_s - found.delay_s : 0.0;
   const double sigma = std::hypot(found.sigma_s, doubt, bias_by_answers(pairs, found));
   DelayReport report{std::move(group), std::move(reference), found.delay_s, sigma, found.correlation};
-  const double least = std::max(options.min_delay_s, 3.0 * sigma);
+  const double least = std::max(options.min_delay_s, estimation::kBeyondChance * sigma);
   if (found.correlation < 0.0) {
     report.finding = DelayFinding::kOppositeSign;
   } else if (!found.determined) {

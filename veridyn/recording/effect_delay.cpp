@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "veridyn/estimation/judgement/evidence.hpp"
 #include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 #include "veridyn/numerics/linear_algebra/products.hpp"
 #include "veridyn/recording/delays.hpp"
@@ -318,7 +319,7 @@ DelayReport common_effect_delay(std::string cause_name, std::string effect_name,
   const auto gain = [&](const std::vector<double>& share) {
     return share[at] - share[static_cast<std::size_t>(longest)];
   };
-  const double least = std::max(options.min_delay_s, 3.0 * report.sigma_s);
+  const double least = std::max(options.min_delay_s, estimation::kBeyondChance * report.sigma_s);
   if (report.delay_s < -least) {
     report.finding = DelayFinding::kBeforeCause;
   } else if (report.delay_s < least) {

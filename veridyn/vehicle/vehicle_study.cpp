@@ -125,10 +125,10 @@ estimation::Estimate by_motion(const VehicleIdentification& identification, cons
 
 /// `yaw_rate` is null where this drive could not be predicted.
 estimation::Evidence another_drive(const estimation::PredictedQuantity* yaw_rate, double least_r2) {
-  const bool holds = yaw_rate != nullptr && yaw_rate->fit.r2 >= least_r2;
-  estimation::Evidence row =
-      row_of(Check::kAnotherRecording, "yaw_rate", estimation::passed_or(holds, Outcome::kFailed));
-  row.limit = least_r2;
+  const Outcome outcome =
+      yaw_rate == nullptr ? Outcome::kFailed : estimation::outcome_of_hold_out(yaw_rate->fit.r2, least_r2);
+  estimation::Evidence row = row_of(Check::kAnotherRecording, "yaw_rate", outcome);
+  row.limit = outcome == Outcome::kCare ? estimation::kHoldOutCare : least_r2;
   if (yaw_rate == nullptr)
     row.cause = estimation::Cause::kMissing;
   else

@@ -13,6 +13,7 @@
 
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::aircraft {
@@ -122,7 +123,7 @@ Identified counted(const std::string& aircraft, std::uint64_t seed, testing::Ass
     kept.analysis.estimate.judgement = flight.analysis.estimate.judgement;
     for (const estimation::Evidence& row : flight.analysis.estimate.evidence)
       kept.analysis.estimate.evidence.push_back(
-          {.name = row.name, .about = row.about, .outcome = row.outcome, .bears_on = row.bears_on});
+          {.check = row.check, .about = row.about, .outcome = row.outcome, .bears_on = row.bears_on});
   } catch (const InputError&) {
     // The pilot lost the aircraft: no flight to identify from.
     kept.refused = true;
@@ -145,7 +146,7 @@ std::map<std::string, Alarms> alarms_of(const std::vector<Identified>& flights) 
     for (const estimation::Evidence& row : flight.analysis.estimate.evidence) {
       if (row.bears_on.empty()) continue;
       const Outcome outcome = row.outcome == Outcome::kMissing ? Outcome::kPassed : row.outcome;
-      Outcome& so_far = worst[row.name];
+      Outcome& so_far = worst[std::string(estimation::name_of(row))];
       so_far = std::max(so_far, outcome);
     }
     for (const auto& [name, outcome] : worst) {

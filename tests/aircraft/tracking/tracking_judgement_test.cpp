@@ -156,7 +156,7 @@ TEST(TrackedEvidence, AsksWhetherAnAircraftHasSuchValues) {
   TrackedCoefficient unknown = tracked_cm(10.0);
   const Eigen::MatrixXd W = unknown.tracker->regression().options().error_covariance;
   unknown.tracker.emplace(unknown.model, W, TrackOptions{}, 20.0);
-  for (const Evidence& e : tracked_evidence(unknown, subject)) EXPECT_NE(e.name, "plausibility of Cm_q");
+  for (const Evidence& e : tracked_evidence(unknown, subject)) EXPECT_NE(e.check, estimation::Check::kPlausibleSign);
 }
 
 // The table of docs/tracking.md: track_coverage.md in the working folder.

@@ -3,15 +3,26 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "veridyn/estimation/judgement/check.hpp"
+
 namespace veridyn::estimation {
 namespace {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-Evidence row(Outcome outcome, Purposes bears_on, std::string text = "") {
-  return {.outcome = outcome, .text = std::move(text), .bears_on = bears_on};
+/// A row that says `about` and no more.
+Evidence row(Outcome outcome, Purposes bears_on, std::string about = "") {
+  return Evidence{.check = Check::kSignAgainstOthers,
+                  .about = std::move(about),
+                  .outcome = outcome,
+                  .value = 0.0,
+                  .bears_on = bears_on}
+      .with("reference", std::string("gyro"));
 }
+
+/// What such a row says.
+std::string said(std::string about) { return says(row(Outcome::kCare, {}, std::move(about))); }
 
 TEST(Purposes, AreASet) {
   const Purposes two = Purpose::kData | Purpose::kPrediction;
@@ -30,9 +41,9 @@ TEST(Judge, TakesTheWorstRowThatBearsOnAPurpose) {
   EXPECT_EQ(judgement.data.grade, Grade::kYes);
   EXPECT_THAT(judgement.data.decided_by, IsEmpty());
   EXPECT_EQ(judgement.parameters.grade, Grade::kWithCare);
-  EXPECT_THAT(judgement.parameters.decided_by, ElementsAre("so-so"));
+  EXPECT_THAT(judgement.parameters.decided_by, ElementsAre(said("so-so")));
   EXPECT_EQ(judgement.prediction.grade, Grade::kNo);
-  EXPECT_THAT(judgement.prediction.decided_by, ElementsAre("bad"));
+  EXPECT_THAT(judgement.prediction.decided_by, ElementsAre(said("bad")));
 }
 
 TEST(Judge, DoesNotJudgeWithoutARowOrWithoutWhatWouldDecide) {
@@ -42,7 +53,7 @@ TEST(Judge, DoesNotJudgeWithoutARowOrWithoutWhatWouldDecide) {
                                    row(Outcome::kMissing, Purpose::kPrediction, "no hold-out")};
   EXPECT_EQ(judge(rows).data.grade, Grade::kNotJudged) << "what cannot be verified is no judgement";
   EXPECT_EQ(judge(rows).prediction.grade, Grade::kNotJudged);
-  EXPECT_THAT(judge(rows).prediction.decided_by, ElementsAre("no hold-out"));
+  EXPECT_THAT(judge(rows).prediction.decided_by, ElementsAre(said("no hold-out")));
 }
 
 TEST(Judge, DoesNotLowerAGradeByWhatCannotBeVerified) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "veridyn/estimation/judgement/evidence.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/regression/bootstrap.hpp"
 #include "veridyn/estimation/regression/frequency_domain.hpp"
@@ -17,7 +18,7 @@ namespace {
 using estimation::Parameter;
 using estimation::RegressionEstimate;
 
-constexpr double kContradiction = 3.0;
+using estimation::kBeyondChance;
 
 /// Where a parameter differs between flights, other methods on the same flights know its mean no better than
 /// regression.
@@ -50,7 +51,7 @@ std::string contradictions(std::span<const OtherParameter> parameters, const std
                            const std::string& chosen) {
   std::vector<std::string> names;
   for (const OtherParameter& row : parameters) {
-    if (row.estimate.method == method && std::abs(row.normalised_difference) > kContradiction)
+    if (row.estimate.method == method && std::abs(row.normalised_difference) > kBeyondChance)
       names.push_back(fmt::format("{} ({:+.1f} sigma)", row.estimate.parameter.name, row.normalised_difference));
   }
   return names.empty() ? "" : fmt::format("{} contradicts {} in {}", method, chosen, fmt::join(names, ", "));

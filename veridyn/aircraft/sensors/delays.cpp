@@ -10,6 +10,7 @@
 #include <map>
 #include <utility>
 
+#include "veridyn/estimation/judgement/evidence.hpp"
 #include "veridyn/aircraft/model/atmosphere.hpp"
 #include "veridyn/aircraft/model/still_air_rate.hpp"
 #include "veridyn/aircraft/sensors/vane_kinematics.hpp"
@@ -61,7 +62,7 @@ std::optional<DelayReport> better_of(std::optional<DelayReport> a, std::optional
   const bool both = a->determined() && b->determined();
   const bool first = a->determined() != b->determined() ? a->determined() : a->sigma_s > 0.0 && a->sigma_s < b->sigma_s;
   std::optional<DelayReport>&chosen = first ? a : b, &other = first ? b : a;
-  if (both && std::abs(a->delay_s - b->delay_s) > 3.0 * std::hypot(a->sigma_s, b->sigma_s)) {
+  if (both && std::abs(a->delay_s - b->delay_s) > estimation::kBeyondChance * std::hypot(a->sigma_s, b->sigma_s)) {
     chosen->contradicted_by = {other->reference, other->delay_s, other->sigma_s};
   }
   return std::move(chosen);

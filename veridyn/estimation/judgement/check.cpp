@@ -60,6 +60,11 @@ Evidence row_of(Check check, std::string about, double value, double sigma) {
   return row;
 }
 
+Outcome outcome_of_hold_out(double r2, double least) {
+  if (!(r2 >= least)) return Outcome::kFailed;
+  return r2 < kHoldOutCare ? Outcome::kCare : Outcome::kPassed;
+}
+
 Evidence row_of(Check check, std::string about, Outcome outcome) {
   const CheckInfo& info = info_of(check);
   Evidence row{.check = check,

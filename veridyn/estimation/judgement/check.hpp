@@ -113,6 +113,9 @@ struct CheckInfo {
 /// A row whose outcome follows from the limits of its check, beyond kBeyondChance standard errors. Its limit is the one
 /// that decided, else the nearest. Missing where the value is NaN.
 [[nodiscard]] Evidence row_of(Check check, std::string about, double value, double sigma = 0.0);
+/// What a share R2 of unseen motion is worth: failed below `least`, with care below kHoldOutCare (or `least`, where a
+/// study asks for more).
+[[nodiscard]] Outcome outcome_of_hold_out(double r2, double least);
 /// A row whose outcome the caller reached: by logic, by a test's p, or by a limit of the study.
 [[nodiscard]] Evidence row_of(Check check, std::string about, Outcome outcome);
 

@@ -14,6 +14,7 @@
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
 #include "veridyn/aircraft/model/jsbsim.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -37,8 +38,8 @@ const estimation::OpenLoopState& state_of(const OpenLoop& flown, std::string_vie
   return *std::ranges::find(flown.states, name, &estimation::OpenLoopState::name);
 }
 
-const Evidence& row_of(const std::vector<Evidence>& rows, std::string_view name, std::string_view about) {
-  return *std::ranges::find_if(rows, [&](const Evidence& row) { return row.name == name && row.about == about; });
+const Evidence& row_of(const std::vector<Evidence>& rows, estimation::Check check, std::string_view about) {
+  return *std::ranges::find_if(rows, [&](const Evidence& row) { return row.check == check && row.about == about; });
 }
 
 double pooled_inside(const OpenLoop& flown) {
@@ -140,7 +141,7 @@ TEST(OpenLoop, OfTheTrueModelHasTheMeasurementsInItsBands) {
   }
   EXPECT_LT(state_of(open, "airspeed").fit.theil, 0.01);
   EXPECT_LT(state_of(open, "q").normalised_rmse, 0.1);
-  for (const Evidence& row : open_loop_evidence(open)) EXPECT_TRUE(row.passed()) << row.text;
+  for (const Evidence& row : open_loop_evidence(open)) EXPECT_TRUE(row.passed()) << says(row);
 }
 
 // Models drawn from a covariance, with bands that know it: theirs cover too.
@@ -192,10 +193,10 @@ TEST(OpenLoop, OfAWrongCoefficientLeavesItsBandsSoonAndTheRowFails) {
     EXPECT_LT(state_of(open, state).horizon_s, 4.0) << state << " is held for 8 s by the true model";
     EXPECT_LT(state_of(open, state).held, state_of(open, state).windows) << state;
     const std::string axis = to_string(axis_of(name));
-    const Evidence row = row_of(open_loop_evidence(open), "open loop horizon", axis);
-    EXPECT_LT(row.value, row.limit) << row.text;
+    const Evidence row = row_of(open_loop_evidence(open), estimation::Check::kOpenLoopHorizon, axis);
+    EXPECT_LT(row.value, row.limit) << says(row);
     // The stiffness in yaw moves little of what the doublets make, and the aircraft turns back all the same: care.
-    EXPECT_EQ(row.outcome, name == Coefficient::kCn ? Outcome::kCare : Outcome::kFailed) << row.text;
+    EXPECT_EQ(row.outcome, name == Coefficient::kCn ? Outcome::kCare : Outcome::kFailed) << says(row);
   }
 }
 
@@ -280,7 +281,7 @@ TEST(OpenLoop, OfAModelThatDivergesIsCutThereAndTheRowFails) {
   ASSERT_FALSE(open.windows.empty());
   EXPECT_TRUE(open.windows[0].diverged);
   const auto rows = open_loop_evidence(open);
-  EXPECT_EQ(row_of(rows, "open loop divergence", "").outcome, Outcome::kFailed);
+  EXPECT_EQ(row_of(rows, estimation::Check::kOpenLoopDivergence, "").outcome, Outcome::kFailed);
   EXPECT_THAT(open.text, HasSubstr("diverged and were cut"));
 }
 

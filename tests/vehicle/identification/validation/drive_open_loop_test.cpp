@@ -69,8 +69,8 @@ const OpenLoopState& state_of(const DriveOpenLoop& driven, std::string_view name
   return *std::ranges::find(driven.states, name, &OpenLoopState::name);
 }
 
-const Evidence& row_of(const std::vector<Evidence>& rows, std::string_view name) {
-  return *std::ranges::find(rows, name, &Evidence::name);
+const Evidence& row_of(const std::vector<Evidence>& rows, estimation::Check check) {
+  return *std::ranges::find(rows, check, &Evidence::check);
 }
 
 double pooled_inside(const DriveOpenLoop& driven) {
@@ -288,7 +288,7 @@ TEST(DriveOpenLoop, OfTheTrueModelHasTheMeasurementsInItsBands) {
       EXPECT_EQ(state.held, state.windows) << state.name;
       EXPECT_LT(state.normalised_rmse, 0.15) << state.name;
     }
-    for (const Evidence& row : open_loop_evidence(driven)) EXPECT_TRUE(row.passed()) << row.text;
+    for (const Evidence& row : open_loop_evidence(driven)) EXPECT_TRUE(row.passed()) << says(row);
   }
   EXPECT_NEAR(inside, 0.95, 0.03);
 }
@@ -347,8 +347,8 @@ TEST(DriveOpenLoop, OfAWrongParameterLeavesItsBandsSoonAndTheRowSaysSo) {
     EXPECT_EQ(yaw_rate.held, 0u);
     EXPECT_LT(pooled_inside(driven), 0.9);
     const std::vector<Evidence> rows = open_loop_evidence(driven);
-    const Evidence row = row_of(rows, "open loop horizon");
-    EXPECT_FALSE(row.passed()) << row.text;
+    const Evidence row = row_of(rows, estimation::Check::kOpenLoopHorizon);
+    EXPECT_FALSE(row.passed()) << says(row);
     EXPECT_NE(row.cause, estimation::Cause::kNone);
     EXPECT_FALSE(advice_of(row).empty());
   }
@@ -467,13 +467,15 @@ TEST(DriveOpenLoop, OfAStiffCarIsNotHeldByHoldingTenOfItsPeriods) {
   driven.states.push_back(
       {.name = "yaw_rate", .unit = "deg/s", .normalised_rmse = 0.1, .horizon_s = 1.5, .windows = 3});
   const std::vector<Evidence> left = open_loop_evidence(driven);
-  EXPECT_EQ(row_of(left, "open loop horizon").outcome, Outcome::kCare) << "36 of its periods, and a second and a half";
-  EXPECT_NEAR(row_of(left, "open loop horizon").value, 1.5, 1e-12);
-  EXPECT_THAT(says(row_of(left, "open loop horizon")), HasSubstr("0.042 s, is shorter"));
+  EXPECT_EQ(row_of(left, estimation::Check::kOpenLoopHorizon).outcome, Outcome::kCare)
+      << "36 of its periods, and a second and a half";
+  EXPECT_NEAR(row_of(left, estimation::Check::kOpenLoopHorizon).value, 1.5, 1e-12);
+  EXPECT_THAT(says(row_of(left, estimation::Check::kOpenLoopHorizon)), HasSubstr("0.042 s, is shorter"));
   driven.states[0].horizon_s = 10.5;
-  EXPECT_EQ(row_of(open_loop_evidence(driven), "open loop horizon").outcome, Outcome::kPassed);
+  EXPECT_EQ(row_of(open_loop_evidence(driven), estimation::Check::kOpenLoopHorizon).outcome, Outcome::kPassed);
   driven.yaw_period_s = 1.5;
-  EXPECT_EQ(row_of(open_loop_evidence(driven), "open loop horizon").outcome, Outcome::kCare) << "7 slow periods";
+  EXPECT_EQ(row_of(open_loop_evidence(driven), estimation::Check::kOpenLoopHorizon).outcome, Outcome::kCare)
+      << "7 slow periods";
 }
 
 TEST(DriveOpenLoop, SaysWhyNothingWasDrivenAndIsSilentWhereNothingIsAskedFor) {

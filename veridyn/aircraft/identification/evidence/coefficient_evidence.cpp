@@ -66,6 +66,8 @@ Evidence holdout(const std::string& name, const CoefficientChecks& checks, doubl
   // that misses by more than the mean does is not that.
   if (!passed && checks.holdout_ratio < estimation::kNoiseKnownTo && !(r2 < 0.0))
     return row(Outcome::kCare, Purpose::kPrediction, Cause::kExcitation);
+  if (estimation::outcome_of_hold_out(r2, least_r2) == Outcome::kCare)
+    return row(Outcome::kCare, Purpose::kPrediction, Cause::kMissingTerm);
   const bool weak = checks.unmodelled_share > kWeakModel;
   const Outcome outcome = !passed ? Outcome::kFailed : passed_or(!weak, Outcome::kCare);
   return row(outcome, Purpose::kParameters | Purpose::kPrediction,

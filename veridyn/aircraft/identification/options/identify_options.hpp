@@ -9,6 +9,7 @@
 #include "veridyn/core/enum_array.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/estimation/regression/regression.hpp"
+#include "veridyn/estimation/judgement/limits.hpp"
 #include "veridyn/estimation/regression/structure_search.hpp"
 
 namespace veridyn::aircraft {
@@ -24,13 +25,13 @@ struct IdentifyOptions {
   double signal_to_noise = 1.0;      ///< `signal_to_noise`: S/n of the excitation threshold, 1 to 10
   double significance = 0.05;        ///< `significance`: level of the t-tests
   /// `min_holdout_r2`: a coefficient that explains less of the hold-out's variance is rejected.
-  double min_holdout_r2 = 0.3;
+  double min_holdout_r2 = estimation::kHoldOutFailed;
   /// `max_unmodelled`: largest share of the coefficient's variance that may be neither modelled nor noise of the
   /// sensors.
-  double max_unmodelled = 0.1;
+  double max_unmodelled = estimation::kUnmodelledShare;
   /// `contradiction_level`: identification and hold-out data, estimated separately, must agree at this level
   /// (chi-square).
-  double contradiction_level = 1e-3;
+  double contradiction_level = estimation::kPartsContradict;
   /// `structure`: "given" (nothing) takes the subject's terms; "stepwise" or "orthogonal" chooses among the candidates
   /// first.
   std::optional<estimation::StructureMethod> structure = {};

@@ -9,6 +9,7 @@
 #include "veridyn/aircraft/model/estimated_subject.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/estimation/judgement/check.hpp"
+#include "veridyn/estimation/judgement/limits.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -38,13 +39,13 @@ CoefficientResult evaluate_coefficient(const CoefficientModel& model, std::span<
   result.flight_fits = internal::fits_by_flight(rows, flights, values);
   const double explained = 100.0 * std::max(0.0, result.holdout_fit.r2);
   const double least = options.min_holdout_r2;
-  const bool holds = result.holdout_fit.r2 >= least;
+  const estimation::Outcome outcome = estimation::outcome_of_hold_out(result.holdout_fit.r2, least);
+  const bool holds = outcome != estimation::Outcome::kFailed;
   const std::string where = flights_text(result.flight_fits);
   result.verdict = holds ? estimation::GroupVerdict::kIdentified : estimation::GroupVerdict::kRejected;
-  estimation::Evidence row = estimation::row_of(estimation::Check::kAnotherFlight, name,
-                                                estimation::passed_or(holds, estimation::Outcome::kFailed));
+  estimation::Evidence row = estimation::row_of(estimation::Check::kAnotherFlight, name, outcome);
   row.value = result.holdout_fit.r2;
-  row.limit = least;
+  row.limit = outcome == estimation::Outcome::kCare ? estimation::kHoldOutCare : least;
   result.evidence = {std::move(row).with("explained", 0.01 * explained).with("flights", where)};
   result.judgement = estimation::judge(result.evidence);
   result.reason = holds ? fmt::format("{} holds: it explains {:.0f} % of {}", name, explained, where)

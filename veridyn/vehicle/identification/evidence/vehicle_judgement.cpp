@@ -9,6 +9,7 @@
 
 #include "veridyn/estimation/judgement/agreement.hpp"
 #include "veridyn/estimation/judgement/check.hpp"
+#include "veridyn/estimation/judgement/limits.hpp"
 #include "veridyn/vehicle/identification/evidence/drive_evidence.hpp"
 #include "veridyn/vehicle/identification/evidence/model_error.hpp"
 #include "veridyn/vehicle/identification/evidence/vehicle_plausibility.hpp"
@@ -105,9 +106,11 @@ Evidence no_prediction(Cause cause) {
 /// `yaw_rate` is null where nothing was held out.
 Evidence check_prediction(const estimation::PredictedQuantity* yaw_rate, double least_r2) {
   if (yaw_rate == nullptr) return no_prediction(Cause::kMissing);
-  Evidence row = row_of(Check::kHoldOut, "yaw_rate", passed_or(yaw_rate->fit.r2 >= least_r2, Outcome::kFailed));
+  Evidence row = row_of(Check::kHoldOut, "yaw_rate", estimation::outcome_of_hold_out(yaw_rate->fit.r2, least_r2));
   row.value = yaw_rate->fit.r2;
-  row.limit = least_r2;
+  row.limit = row.outcome == Outcome::kCare ? estimation::kHoldOutCare : least_r2;
+  // What it predicts poorly but better than nothing is judged as a constant by the other rows.
+  if (row.outcome == Outcome::kCare) row.bears_on = Purpose::kPrediction;
   return row;
 }
 
