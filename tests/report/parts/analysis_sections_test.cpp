@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 
 namespace veridyn::report {
 namespace {
@@ -32,7 +33,7 @@ Analysis analysis_with(GroupVerdict verdict) {
                    {.method = "output error",
                     .usable = true,
                     .parameters = {stiffness(5e4), {.name = "bias", .value = 0.1, .unit = "rad"}}}},
-       .evidence = {{.name = "delay", .outcome = estimation::Outcome::kFailed, .text = "late by 0.1 s"}}}};
+       .evidence = {estimation::row_of(estimation::Check::kDeflections, "", estimation::Outcome::kFailed)}}};
   return analysis;
 }
 
@@ -97,12 +98,10 @@ TEST(MethodsSection, ComparesWhatSeveralMethodsEstimatedAndSaysWhyOneGaveNothing
 
 estimation::Estimate judged_estimate(estimation::Outcome outcome) {
   estimation::Estimate estimate;
-  estimate.evidence = {{.name = "delay",
-                        .about = "gps",
-                        .outcome = outcome,
-                        .text = "late by 0.1 s",
-                        .bears_on = estimation::kAllPurposes,
-                        .advice = "give delays.gps"}};
+  estimate.evidence = {estimation::row_of(estimation::Check::kHeldSamples, "gps", outcome)
+                           .with("channel", std::string("gps"))
+                           .with("rate_Hz", 1.0)};
+  estimate.evidence.front().value = 5.0;
   estimate.judgement = estimation::judge(estimate.evidence);
   return estimate;
 }
@@ -113,7 +112,10 @@ TEST(VerdictOf, SaysWhatDecidedAndWhatToDo) {
   EXPECT_THAT(verdict_of(judged_estimate(Outcome::kPassed)).lines, testing::IsEmpty());
   const Verdict care = verdict_of(judged_estimate(Outcome::kCare));
   EXPECT_EQ(care.level, Level::kCaution);
-  EXPECT_THAT(care.lines, testing::ElementsAre("gps: late by 0.1 s", "What to do: give delays.gps"));
+  EXPECT_THAT(care.lines,
+              testing::ElementsAre("gps is measured at 1 Hz and held: 5 samples in a row are one measurement",
+                                   "What to do: give the recording with the sensor's own stamps, one a "
+                                   "measurement"));
   EXPECT_EQ(verdict_of(judged_estimate(Outcome::kFailed)).level, Level::kBad);
 }
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <iterator>
 
 #include "veridyn/aircraft/identification/evidence/air_data_evidence.hpp"
 #include "veridyn/aircraft/identification/evidence/contradicted_flight.hpp"
@@ -16,6 +17,7 @@
 #include "veridyn/numerics/threads/parallel.hpp"
 #include "veridyn/recording/inertial_consistency.hpp"
 #include "veridyn/recording/sample_evidence.hpp"
+#include "veridyn/recording/stamp_evidence.hpp"
 #include "veridyn/recording/time_order.hpp"
 
 namespace veridyn::aircraft {
@@ -176,6 +178,7 @@ std::vector<Evidence> sample_rows(const Recording& recording, const Segments& se
                                                                 {"aileron", "aileron", recording::Rest::kControl},
                                                                 {"rudder", "rudder", recording::Rest::kControl}};
   std::vector<Evidence> rows = recording::sample_evidence(recording, kChannels, segments.airborne, threads);
+  std::ranges::move(recording::stamp_evidence(recording, kChannels, segments.airborne), std::back_inserter(rows));
   for (Evidence& row : rows) row.affects = affected_by(row.about);
   return rows;
 }
