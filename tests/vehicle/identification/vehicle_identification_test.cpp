@@ -10,6 +10,7 @@
 #include "tests/vehicle/identification/identified_drive.hpp"
 #include "tests/vehicle/interrupting_progress.hpp"
 #include "tests/vehicle/simulated_drive.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
 
@@ -203,7 +204,7 @@ TEST(VehicleIdentification, StopsSoonWhereverItIsInterruptedAndLeavesTheBestSoFa
     EXPECT_GE(grade(stopped), estimation::Grade::kWithCare);
     EXPECT_THAT(stopped.id.reason, ::testing::StartsWith("interrupted: "));
     ASSERT_FALSE(stopped.id.checks.empty());
-    EXPECT_EQ(stopped.id.checks.front().name, "interruption");
+    EXPECT_EQ(stopped.id.checks.front().check, estimation::Check::kInterruption);
     const estimation::Estimate estimate = make_vehicle_estimate(stopped.id, "car");
     EXPECT_TRUE(estimate.interrupted);
     EXPECT_THAT(estimation::sentence_of(estimate), ::testing::StartsWith("Interrupted: "));
@@ -215,7 +216,7 @@ TEST(VehicleIdentification, StopsSoonWhereverItIsInterruptedAndLeavesTheBestSoFa
   ASSERT_TRUE(last.id.interrupted);
   EXPECT_DOUBLE_EQ(last.id.best()->find("C_f")->value, best->find("C_f")->value);
   EXPECT_EQ(grade(last), estimation::Grade::kWithCare);
-  EXPECT_THAT(last.id.checks.front().text, ::testing::EndsWith("converged: parts of the drive were not compared"));
+  EXPECT_THAT(says(last.id.checks.front()), ::testing::EndsWith("converged: parts of the drive were not compared"));
 }
 
 TEST(VehicleIdentification, AnInterruptedSearchThatHadNotConvergedGivesNoPhysicalConstants) {
@@ -226,7 +227,7 @@ TEST(VehicleIdentification, AnInterruptedSearchThatHadNotConvergedGivesNoPhysica
   ASSERT_NE(id.best(), nullptr);
   EXPECT_EQ(id.judgement.parameters.grade, estimation::Grade::kNo);
   EXPECT_NE(id.verdict, estimation::GroupVerdict::kIdentified);
-  EXPECT_THAT(id.checks.front().text, ::testing::HasSubstr("not all structures were tried"));
+  EXPECT_THAT(says(id.checks.front()), ::testing::HasSubstr("not all structures were tried"));
   for (const Parameter& p : id.best()->parameters) EXPECT_NE(p.status, ParameterStatus::kIdentified) << p.name;
 }
 
