@@ -132,9 +132,12 @@ class Explainer {
       if (!m_.has(c) || c == kPosX || c == kPosY) continue;
       suspects_.push_back({{Cause::kScale, {c}}, kScale, 0.05, 20.0});
       // What fits another one is no other motion.
-      const bool fits = std::ranges::any_of(
-          relations_, [c](const ChannelRelation& r) { return r.power[c] != 0 && !r.may_be_none && r.fits(); });
-      if (!fits) suspects_.push_back({{Cause::kSwap, {c}, kNaN}, kAnotherMotion, kNaN, kNaN});
+      const auto some = [&](auto holds) {
+        return std::ranges::any_of(relations_, [&](const ChannelRelation& r) { return r.power[c] != 0 && holds(r); });
+      };
+      const bool fits = some([](const ChannelRelation& r) { return !r.may_be_none && r.fits(); });
+      const bool unrelated = some([](const ChannelRelation& r) { return r.unrelated(); });
+      if (!fits && unrelated) suspects_.push_back({{Cause::kSwap, {c}, kNaN}, kAnotherMotion, kNaN, kNaN});
     }
   }
   [[nodiscard]] static bool in(const ChannelFault& fault, InertialChannel c) {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "veridyn/estimation/judgement/evidence.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/estimation/judgement/evidence.hpp"
 #include "veridyn/numerics/delay.hpp"
 #include "veridyn/recording/grid_signals.hpp"
 

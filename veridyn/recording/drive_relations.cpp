@@ -290,14 +290,19 @@ void Relations::compare_steer() {
     kinematic[k] = drives ? wheelbase() * yaw_rate[k] / speed[k] : kNaN;
     used[k] = std::abs(turning[k]) < kLinearTyres_mps2;
   }
-  const std::span<const bool> linear(used.get(), turning.size());
+  // Where hardly anything is left, yaw rate or speed is in another unit.
+  constexpr double kFewest = 0.1;
+  const bool few = static_cast<double>(std::count(used.get(), used.get() + turning.size(), true)) <
+                   kFewest * static_cast<double>(turning.size());
+  const std::span<const bool> linear =
+      few ? std::span<const bool>() : std::span<const bool>(used.get(), turning.size());
   Compared compared{.channel = kSteer,
                     .truth = kinematic,
                     .others = {yaw_acceleration},
                     .least = kLeastSteer * wheelbase() / std::max(1.0, wheelbase()),
                     .used = linear};
   ChannelRelation* relation =
-      add(Check::kSteeringScale, "turning and understeer imply", compared, {{kSteer, 1}, {kSpeed, 1}, {kGyroZ, -1}});
+      add(Check::kSteeringScale, "turning with any understeer", compared, {{kSteer, 1}, {kSpeed, 1}, {kGyroZ, -1}});
   if (relation == nullptr) return;
   if (o_.wheelbase <= 0.0) {
     const double u2 = typical_speed_ * typical_speed_;

@@ -48,7 +48,9 @@ std::vector<Evidence> bound_rows(std::span<const Parameter> parameters) {
     if (p.status == ParameterStatus::kFixed || p.status == ParameterStatus::kNotExcited) continue;
     const bool no_error = p.sigma <= kNoError * std::abs(p.value) && p.value != 0.0;
     if (p.status != ParameterStatus::kAtBound && !no_error) continue;
-    Evidence row = estimation::row_of(Check::kAtBound, p.name, estimation::Outcome::kFailed);
+    // Of what no one asked for, a bound leaves the others to be used with care.
+    Evidence row = estimation::row_of(
+        Check::kAtBound, p.name, is_of_vehicle(p.name) ? estimation::Outcome::kFailed : estimation::Outcome::kCare);
     row.cause = Cause::kBound;
     row.value = row.limit = p.value;
     rows.push_back(std::move(row));

@@ -1,4 +1,4 @@
-#include "veridyn/vehicle/identification/evidence/vehicle_judgement.hpp"
+#include "veridyn/vehicle/identification/judgement/vehicle_judgement.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -191,7 +191,9 @@ std::vector<Evidence> rows_of(const VehicleProblem& problem, const VehicleFindin
   add(estimation::unfinished_rows(findings.unfinished));
   // A contradiction in the recording is the cause of others.
   if (problem.recording != nullptr) {
-    KnownByModel known{.steer_delay = findings.steer_delay};
+    KnownByModel known;
+    // A model of wrong channels says nothing of their clocks.
+    if (!contradicts_itself(*problem.recording)) known.steer_delay = findings.steer_delay;
     if (const Parameter* p = findings.chosen.find(kDriveUnknownNames[DriveUnknown::kRollGradient]))
       known.roll_gradient = p->value;
     add(recording_rows(*problem.recording, known));

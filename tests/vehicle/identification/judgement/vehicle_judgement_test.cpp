@@ -1,4 +1,4 @@
-#include "veridyn/vehicle/identification/evidence/vehicle_judgement.hpp"
+#include "veridyn/vehicle/identification/judgement/vehicle_judgement.hpp"
 
 #include <gmock/gmock.h>
 
