@@ -211,7 +211,7 @@ TEST_F(VehicleProgram, AnInterruptedSearchLeavesTheBestSoFarAndSaysSo) {
   const auto estimate = nlohmann::json::parse(read_file(in_out("estimate.json")));
   EXPECT_EQ(estimate["interrupted"], true);
   EXPECT_EQ(estimate["grades"]["parameters"]["grade"], "no");
-  EXPECT_EQ(estimate["evidence"][0]["name"], "interruption");
+  EXPECT_EQ(estimate["evidence"][0]["check"], "interruption");
   EXPECT_GT(estimate["parameters"][0]["value"], 0.0);
   EXPECT_THAT(read_file(in_out("report.html")), HasSubstr("Interrupted: this is the best estimate found by then. "));
   for (const auto& entry : std::filesystem::directory_iterator(folder_ / "out"))

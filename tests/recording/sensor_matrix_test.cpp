@@ -31,10 +31,11 @@ GainFault fault(const Eigen::Matrix3d& gain) { return gain_fault(matrix(gain), k
 TEST(GainFault, FindsTheCause) {
   const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
   EXPECT_EQ(fault(I).cause, Cause::kNone);
+  // Of an accelerometer no speed and no angle is a unit.
+  EXPECT_EQ(fault(3.6 * I).cause, Cause::kScale);
   for (const auto& [factor, unit] : {std::pair{1.0 / kGravity, "g taken for m/s^2"},
-                                     {1.0 / kDegree, "degrees taken for radians"},
-                                     {3.6, "km/h taken for m/s"},
-                                     {1000.0, "a factor of 1000 between units"}}) {
+                                     {1.0 / 0.3048, "ft/s^2 taken for m/s^2"},
+                                     {1000.0, "mm/s^2 taken for m/s^2"}}) {
     EXPECT_EQ(fault(factor * I).cause, Cause::kUnit);
     EXPECT_EQ(fault(factor * I).unit, unit);
     EXPECT_NEAR(fault(factor * I).factor, factor, 1e-12);

@@ -231,7 +231,8 @@ std::vector<Unit> units_like(const Unit& like) {
   // The common names of what has several, and compounds, before the names of the table.
   static const std::vector<Unit> all = [] {
     std::vector<Unit> units;
-    for (const char* name : {"km/h", "ft/s", "deg/s", "ft/s^2", "g"}) units.push_back(parse_unit(name));
+    for (const char* name : {"km/h", "ft/s", "cm/s", "mm/s", "deg/s", "mrad/s", "ft/s^2", "g", "cm/s^2", "mm/s^2"})
+      units.push_back(parse_unit(name));
     for (const auto& [name, unit] : known_units()) units.push_back({unit.dimension, unit.scale, unit.offset, name});
     return units;
   }();

@@ -198,8 +198,8 @@ class Explainer {
     double sharpest = kInfinity;
     for (const ChannelRelation& r : relations_) {
       const auto [reading, truth] = known_factors(r);
-      // Nothing is expected of another motion, or where nothing moves.
-      if (std::isnan(reading * truth) || !r.moved(reading, truth)) continue;
+      // Nothing is expected of another motion, or of noise where nothing moves.
+      if (std::isnan(reading * truth) || !r.moved() || (r.unrelated() && !r.moved(reading, truth))) continue;
       const double known = reading / truth;
       if (r.unrelated()) return;
       int power = 0;

@@ -71,7 +71,7 @@ TEST(JudgeTasks, AParameterAtItsBoundHasARowOfItsOwn) {
   EXPECT_EQ(row.about, "length");
   EXPECT_EQ(row.outcome, Outcome::kCare);
   EXPECT_EQ(row.cause, Cause::kBound);
-  EXPECT_THAT(says(row), HasSubstr("length ended at its bound 1 1"));
+  EXPECT_THAT(says(row), HasSubstr("the search for length ended at 1"));
   const Evidence determined = f.row(Check::kDeterminedByTasks);
   EXPECT_EQ(determined.outcome, Outcome::kCare);
   EXPECT_EQ(determined.value, 1.0);

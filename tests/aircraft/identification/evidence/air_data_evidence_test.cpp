@@ -95,7 +95,7 @@ TEST(AirDataEvidence, GradesTheScaleOfTheAirspeed) {
   EXPECT_EQ(row(0.8).outcome, Outcome::kFailed) << says(row(0.8));
   EXPECT_EQ(row(0.8).cause, Cause::kScale);
   EXPECT_EQ(row(1.9438).cause, Cause::kUnit);
-  EXPECT_THAT(says(row(1.9438)), ::testing::HasSubstr("knots taken for m/s"));
+  EXPECT_THAT(says(row(1.9438)), ::testing::HasSubstr("kt taken for m/s"));
   EXPECT_FALSE(advice_of(row(0.8)).empty());
   // What the reconstruction found of the pitot tube, in pressure, is not held against it.
   const CheckedFlight taken_off = circled({.scale = std::sqrt(1.2), .gust = 0.05}, {"pitot_scale", 0.2});

@@ -210,7 +210,6 @@ TEST(DriveEvidence, FindsHowFarABodyLeans) {
   const Recording recording = record_drive(rolling_drive(5), reference_drive_sensors(), 5);
   const Judged without = judged(recording, testing::road_car());
   const Evidence* row = find_row(without.rows, Check::kWrongChannel);
-  for (const Evidence& r : without.rows) if (row == nullptr && !r.passed()) ADD_FAILURE() << says(r);
   ASSERT_NE(row, nullptr);
   EXPECT_EQ(row->outcome, Outcome::kCare);
   EXPECT_EQ(row->cause, Cause::kMissingTerm);

@@ -239,7 +239,9 @@ TEST(VehicleJudgement, AModelThatDivergesOpenLoopDoesNotPredict) {
   Case c;
   c.estimate.parameters[0].value = 6e6;
   EXPECT_EQ(c.judge().verdict, estimation::GroupVerdict::kEffective);
-  const std::vector<estimation::Evidence> diverged{estimation::row_of(Check::kOpenLoopDivergence, "", 3.0)};
+  const std::vector<estimation::Evidence> diverged{estimation::row_of(Check::kOpenLoopDivergence, "", 3.0)
+                                                       .with("windows", 8.0)
+                                                       .with("range", std::string("50 rad/s"))};
   const VehicleJudgement found = judge_vehicle(
       {c.signals, c.segments, c.start, c.signal_options, c.options},
       {.chosen = c.estimate, .fit = c.fit, .validation = c.validation, .by_noise = c.by_noise, .further = diverged});
