@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "veridyn/estimation/judgement/check.hpp"
+
 namespace veridyn::vehicle {
 namespace {
 
