@@ -302,9 +302,10 @@ TEST_F(VehicleProgram, RefusesLogsThatHoldNoDrive) {
 
 TEST_F(VehicleProgram, NamesAYawRateOfTheWrongSign) {
   const std::string mirrored = logged("mirrored", [](double t) {
-    return std::array<double, 4>{0.02 * std::sin(t), 20.0, -0.1 * std::sin(t), 2.0 * std::sin(t)};
+    const double turn = std::sin(t) + 0.6 * std::sin(2.3 * t) + 0.3 * std::sin(0.37 * t);
+    return std::array<double, 4>{0.02 * turn, 20.0, -0.1 * turn, 2.0 * turn};
   });
-  const Outcome identified = run("identify " + mirrored + out());
+  const Outcome identified = run("identify " + mirrored + " --out " + in_out("").string());
   EXPECT_THAT(identified.text, HasSubstr("The recording contradicts itself"));
   EXPECT_THAT(identified.text, HasSubstr("the sign of yaw_rate is reversed"));
   EXPECT_THAT(run("inspect " + mirrored).text, HasSubstr("yaw_rate has the wrong sign"));

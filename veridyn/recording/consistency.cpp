@@ -207,7 +207,11 @@ class Explainer {
         for (const InertialChannel c : free->fault.channels) power += r.power[c];
       const Range left = product({r.low, r.high}, {1.0 / known, 1.0 / known});
       if (power == 0) {
-        const Outcome outcome = r.outcome_for(left.low, left.high);
+        // Where gravity may have been taken off, another unit is none because it makes too little of it.
+        const bool another_unit = std::abs(std::abs(known) - 1.0) > 1e-6;
+        const Outcome outcome = r.may_be_none && another_unit
+                                    ? estimation::outcome_between(left.low, left.high, r.tolerance)
+                                    : r.outcome_for(left.low, left.high);
         if (outcome == Outcome::kFailed || (outcome != Outcome::kPassed && !r.may_be_none)) return;
         continue;
       }

@@ -253,7 +253,12 @@ TEST(DriveEvidence, TakesTheIdentifiedLeanForAReadingOfTheAccelerometer) {
 
 /// By signals 0.09 s late.
 recording::DelayReport steering_late(double delay_s = -0.09, double sigma_s = 0.002) {
-  return {.group = "steer", .reference = "yaw_rate", .delay_s = delay_s, .sigma_s = sigma_s, .correlation = 0.99};
+  return {.group = "steer",
+          .reference = "yaw_rate",
+          .delay_s = delay_s,
+          .sigma_s = sigma_s,
+          .correlation = 0.99,
+          .finding = recording::DelayFinding::kApplied};
 }
 
 KnownByModel with_delay(double value, double sigma) {

@@ -78,6 +78,8 @@ TEST(VehicleJudgement, EstimateThatPredictsTheHoldOutIsIdentified) {
 TEST(VehicleJudgement, PoorPredictionOfTheHoldOutRejects) {
   Case c;
   c.validation.quantities = {yaw_rate(0.4, 0.011)};
+  EXPECT_EQ(c.judge().judgement.prediction.grade, estimation::Grade::kWithCare);
+  c.validation.quantities = {yaw_rate(0.2, 0.011)};
   const VehicleJudgement found = c.judge();
   EXPECT_EQ(found.verdict, estimation::GroupVerdict::kRejected);
   EXPECT_THAT(not_passed(found), ElementsAre(Check::kHoldOut));
