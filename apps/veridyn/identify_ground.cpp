@@ -28,24 +28,13 @@ struct GroundResult {
   std::uint64_t seed = 0;
 };
 
-Summary summary_of(const estimation::Estimate& estimate, const std::filesystem::path& folder) {
-  Summary summary;
-  summary["verdict"] = estimate.verdict;
-  summary["folder"] = folder.string();
-  for (const auto& p : estimate.parameters) {
-    summary["parameters"][p.name] = Summary::object(
-        {{"value", p.value}, {"sigma", p.sigma}, {"unit", p.unit}, {"status", estimation::to_string(p.status)}});
-  }
-  summary["warnings"] = estimate.warnings;
-  return summary;
-}
-
 void publish(const StudyRun& run, OutputFolder& folder, const GroundResult& result) {
   folder.write("report.html", report::to_html(result.document));
   for (const auto& [name, content] : result.files) folder.write(name, content);
   folder.write("parameters.csv", parameters_csv(result.estimate));
   folder.write("estimate.json", io::to_json(result.estimate));
-  folder.publish(run.record(result.seed, result.inputs), run.options(), summary_of(result.estimate, folder.path()));
+  folder.publish(run.record(result.seed, result.inputs), run.options(),
+                 estimate_summary(folder.path(), result.estimate));
   for (const std::string& line : result.lines) print_line(run.options(), line);
   for (const std::string& warning : result.estimate.warnings) print_line(run.options(), "warning: " + warning);
   print_line(run.options(), fmt::format("report: {}", (folder.path() / "report.html").string()));

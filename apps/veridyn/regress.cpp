@@ -145,20 +145,8 @@ std::string rows_csv(const JudgedRegression& result) {
 }
 
 Summary summary_of(const JudgedRegression& result, const std::filesystem::path& folder) {
-  Summary summary;
-  summary["verdict"] = result.estimate.verdict;
-  summary["grades"] = grades_summary(result.estimate.judgement);
-  summary["folder"] = folder.string();
-  summary["parameters"] = Summary::object();
-  for (const Parameter& p : result.estimate.parameters)
-    summary["parameters"][p.name] = Summary::object({{"value", p.value},
-                                                     {"sigma", p.sigma},
-                                                     {"low95", p.low95},
-                                                     {"high95", p.high95},
-                                                     {"variance_inflation", p.variance_inflation},
-                                                     {"status", std::string(to_string(p.status))}});
+  Summary summary = estimate_summary(folder, result.estimate, result.groups);
   summary["condition_number"] = result.chosen ? result.chosen->condition_number : kNaN;
-  summary["warnings"] = result.estimate.warnings;
   return summary;
 }
 

@@ -99,10 +99,7 @@ void publish_tracking(const StudyRun& run, OutputFolder& folder, const FlightStu
   const FlightTracker& tracker = flight.tracker();
   const estimation::Estimate estimate = flight.estimate();
   std::string changes = "coefficient,kind,detected[s],began[s],shift\n";
-  Summary summary;
-  summary["verdict"] = estimate.verdict;
-  summary["grades"] = grades_summary(estimate.judgement);
-  summary["folder"] = folder.path().string();
+  Summary summary = estimate_summary(folder.path(), estimate);
   summary["rows"] = tracker.rows();
   summary["changes"] = Summary::array();
   for (const FlightChange& c : tracker.changes()) {
@@ -111,7 +108,6 @@ void publish_tracking(const StudyRun& run, OutputFolder& folder, const FlightStu
                            c.change.began_s, c.change.shift);
     summary["changes"].push_back(Summary::object({{"coefficient", name}, {"detected_s", c.change.detected_s}}));
   }
-  summary["warnings"] = estimate.warnings;
   folder.write("track.csv", io::to_csv(history_recording(tracker)));
   folder.write("changes.csv", changes);
   folder.write("estimate.json", io::to_json(estimate));

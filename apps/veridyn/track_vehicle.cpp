@@ -42,10 +42,7 @@ void publish_tracking(const StudyRun& run, OutputFolder& folder, const PreparedD
   folder.write("estimate.json", io::to_json(estimate));
   std::string changes = "what,kind,detected[s],began[s],shift\n";
   std::size_t count = 0;
-  Summary summary;
-  summary["verdict"] = estimate.verdict;
-  summary["grades"] = grades_summary(estimate.judgement);
-  summary["folder"] = folder.path().string();
+  Summary summary = estimate_summary(folder.path(), estimate);
   summary["changes"] = Summary::array();
   if (const DriveTracker* tracker = tracked.tracker()) {
     folder.write("track.csv", io::to_csv(history_recording(*tracker)));
@@ -57,7 +54,6 @@ void publish_tracking(const StudyRun& run, OutputFolder& folder, const PreparedD
       summary["changes"].push_back(Summary::object({{"what", name}, {"detected_s", c.change.detected_s}}));
     }
   }
-  summary["warnings"] = estimate.warnings;
   folder.write("changes.csv", changes);
   const report::DriveReportContext context{.program = program_name()};
   folder.write("report.html", report::to_html(report::drive_tracking_report(drive.study, tracked, context)));

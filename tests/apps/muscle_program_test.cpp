@@ -147,7 +147,7 @@ TEST_F(MuscleProgram, IdentifiesAndValidatesTheTasksOfItsTemplate) {
     EXPECT_TRUE(std::filesystem::exists(in_out(name))) << name;
   const auto summary = nlohmann::json::parse(done.text);
   EXPECT_EQ(summary["estimate"]["parameters"][0]["status"], "identified");
-  EXPECT_EQ(summary["grades"]["prediction"]["grade"], "yes");
+  EXPECT_EQ(summary["estimate"]["grades"]["prediction"]["grade"], "yes");
   EXPECT_THAT(read_file(in_out("tasks.csv")), HasSubstr("\"task 12: flexion 90-130 deg, shoulder 45 deg\",unseen"));
   EXPECT_EQ(run("inspect " + in_out("model.osim").string()).exit_code, 0);
   const Outcome again = run("validate " + study + " --set tasks.numbers=[15] --estimate-file " +

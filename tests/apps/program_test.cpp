@@ -141,7 +141,7 @@ TEST_F(Program, GoesFromASimulatedFlightToAValidatedModel) {
       run("validate " + study + " --seed 9 --estimate-file " + (folder_ / "out" / "estimate.json").string() +
           " --json --quiet --out " + (folder_ / "other").string());
   EXPECT_EQ(validated.exit_code, 0) << validated.text;
-  EXPECT_THAT(validated.text, HasSubstr("\"Cm\": {\n      \"verdict\": \"identified\""));
+  EXPECT_THAT(validated.text, HasSubstr("\"name\": \"Cm\",\n      \"verdict\": \"identified\""));
 }
 
 TEST_F(Program, ExportsAndComparesWhatOutputErrorGives) {

@@ -242,7 +242,7 @@ TEST_F(VehicleProgram, AnotherDriveValidatesAnEstimate) {
                               file("rejected.json", rejected.dump()) + out());
   const auto summary = nlohmann::json::parse(refused.text);
   EXPECT_EQ(summary["verdict"], "rejected");
-  EXPECT_EQ(summary["grades"]["prediction"]["grade"], "no") << summary["grades"];
+  EXPECT_EQ(summary["estimate"]["grades"]["prediction"]["grade"], "no") << summary["estimate"]["grades"];
 }
 
 TEST_F(VehicleProgram, RefusesWhatNoVehicleCanBeOrDo) {

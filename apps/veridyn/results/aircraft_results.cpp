@@ -151,17 +151,8 @@ void print_identification(const FlightAnalysis& analysis, const std::filesystem:
 }
 
 Summary summary_of(const FlightAnalysis& analysis, const std::filesystem::path& folder) {
-  Summary summary;
-  summary["verdict"] = analysis.estimate.verdict;
-  summary["grades"] = grades_summary(analysis.estimate.judgement);
-  summary["folder"] = folder.string();
-  summary["coefficients"] = Summary::object();
-  for (const CoefficientResult& r : analysis.coefficients) {
-    summary["coefficients"][r.name] = Summary::object({{"verdict", to_string(r.verdict)}, {"reason", r.reason}});
-  }
+  Summary summary = estimate_summary(folder, analysis.estimate, analysis.groups);
   if (analysis.open_loop.available()) summary["open_loop"] = open_loop_summary(analysis.open_loop);
-  summary["parameters"] = analysis.estimate.parameters.size();
-  summary["warnings"] = analysis.estimate.warnings;
   return summary;
 }
 

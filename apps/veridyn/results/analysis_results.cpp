@@ -4,6 +4,7 @@
 
 #include "apps/veridyn/run/console.hpp"
 #include "veridyn/estimation/judgement/reasons.hpp"
+#include "veridyn/io/results/estimate_json.hpp"
 
 namespace veridyn::app {
 
@@ -49,14 +50,22 @@ std::string graded_xml(const std::string& xml, const estimation::Judgement& judg
                      xml.substr(after_declaration));
 }
 
-Summary grades_summary(const estimation::Judgement& judgement) {
-  Summary grades = Summary::object();
-  for (const estimation::Purpose purpose : estimation::kPurposes) {
-    const estimation::PurposeGrade& g = judgement.of(purpose);
-    grades[estimation::to_string(purpose)] =
-        Summary::object({{"grade", estimation::to_string(g.grade)}, {"because", g.decided_by}});
+Summary estimate_summary(const std::filesystem::path& folder, const estimation::Estimate& estimate,
+                         std::span<const estimation::ParameterGroup> groups) {
+  const estimation::GroupVerdict verdict =
+      groups.size() == 1 ? groups.front().verdict : estimation::verdict_of(estimate.judgement);
+  Summary summary = Summary::object({{"folder", folder.string()},
+                                     {"verdict", estimation::to_string(verdict)},
+                                     {"sentence", estimation::sentence_of(estimate)},
+                                     {"groups", Summary::array()}});
+  for (const estimation::ParameterGroup& group : groups) {
+    summary["groups"].push_back(Summary::object({{"name", group.name},
+                                                 {"verdict", estimation::to_string(group.verdict)},
+                                                 {"reason", group.reason},
+                                                 {"method", group.method}}));
   }
-  return grades;
+  summary["estimate"] = Summary::json(io::to_json(estimate));
+  return summary;
 }
 
 }  // namespace veridyn::app

@@ -150,11 +150,7 @@ void print_analysis(const VehicleAnalysis& analysis, const std::filesystem::path
 }
 
 Summary summary_of(const VehicleAnalysis& analysis, const std::filesystem::path& folder) {
-  Summary s;
-  s["folder"] = folder.string();
-  s["verdict"] = to_string(analysis.identification.verdict);
-  s["grades"] = grades_summary(analysis.estimate.judgement);
-  s["reason"] = analysis.identification.reason;
+  Summary s = estimate_summary(folder, analysis.estimate, analysis.groups);
   if (!analysis.identification.profiles.profiles.empty())
     s["profiles"] = profiles_summary(analysis.identification.profiles);
   if (analysis.open_loop.available()) s["open_loop"] = open_loop_summary(analysis.open_loop);
@@ -170,7 +166,6 @@ Summary summary_of(const VehicleAnalysis& analysis, const std::filesystem::path&
                                             {"way", path.distance_m},
                                             {"unit", "m"}});
   }
-  s["estimate"] = Summary::json(io::to_json(analysis.estimate));
   return s;
 }
 

@@ -51,16 +51,11 @@ std::string evaluations_csv(const MuscleAnalysis& analysis) {
 }
 
 Summary summary_of_tasks(const MuscleAnalysis& analysis, const std::filesystem::path& folder) {
-  Summary s;
-  s["folder"] = folder.string();
-  s["verdict"] = to_string(analysis.groups.front().verdict);
-  s["grades"] = grades_summary(analysis.estimate.judgement);
-  s["reason"] = analysis.groups.front().reason;
+  Summary s = estimate_summary(folder, analysis.estimate, analysis.groups);
   s["seconds"] = analysis.result.seconds;
   s["null_directions"] = analysis.result.null_directions;
   if (!analysis.profiles.profiles.empty()) s["profiles"] = profiles_summary(analysis.profiles);
   if (analysis.posterior.usable()) s["posterior"] = posterior_summary(analysis.posterior);
-  s["estimate"] = Summary::json(io::to_json(analysis.estimate));
   return s;
 }
 
