@@ -85,7 +85,8 @@ std::optional<Evidence> frozen_steering(const DriveSignals& signals, std::span<c
 Evidence with_late(Evidence row) {
   row.about = row.value < 0.0 ? "steer" : "yaw_rate";
   if (!row.passed()) row.cause = Cause::kDelay;
-  return std::move(row).with("late", std::abs(row.value));
+  const double late = std::abs(row.value);
+  return std::move(row).with("late", late);
 }
 
 Evidence row_by_signals(const recording::DelayReport& report, bool misled) {
