@@ -28,7 +28,9 @@ using namespace veridyn::vehicle;
 
 Verdict verdict(const VehicleAnalysis& a) {
   Verdict v = verdict_of(a.estimate);
-  v.lines.insert(v.lines.begin(), a.identification.reason);
+  // Why it is less is in the lines of the rows.
+  if (a.identification.verdict == estimation::GroupVerdict::kIdentified)
+    v.lines.insert(v.lines.begin(), a.identification.reason);
   return v;
 }
 

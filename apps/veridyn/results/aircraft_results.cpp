@@ -130,8 +130,11 @@ void print_identification(const FlightAnalysis& analysis, const std::filesystem:
     for (const AxisSegments* axis : {&flight.segments.longitudinal, &flight.segments.lateral})
       print_line(options, of_flight(flight.name, axis->text));
   }
-  for (const CoefficientResult& r : analysis.coefficients)
-    print_line(options, fmt::format("  {:<12} {}", to_string(r.verdict), r.reason));
+  for (const CoefficientResult& r : analysis.coefficients) {
+    // Why it is rejected is among the lines above, or in the report.
+    const bool rejected = r.verdict == estimation::GroupVerdict::kRejected;
+    print_line(options, fmt::format("  {:<12} {}", to_string(r.verdict), rejected ? r.name : r.reason));
+  }
   for (const CoefficientResult& r : analysis.coefficients) {
     if (r.structure)
       print_line(options, fmt::format("  structure    {}: {}", name_of(r.coefficient), r.structure->text));

@@ -145,7 +145,10 @@ void print_analysis(const VehicleAnalysis& analysis, const std::filesystem::path
   print_open_loop(options, analysis.open_loop);
   print_path(options, analysis.open_loop.path);
   for (const std::string& warning : analysis.estimate.warnings) print_line(options, "warning: " + warning);
-  print_line(options, id.reason);
+  // Why it is less was said with the grades.
+  const bool said =
+      id.verdict == estimation::GroupVerdict::kRejected || id.verdict == estimation::GroupVerdict::kEffective;
+  if (!said || analysis.interrupted) print_line(options, id.reason);
   print_line(options, fmt::format("report: {}", (folder / "report.html").string()));
 }
 
