@@ -124,7 +124,7 @@ Section advice_section(const MuscleAnalysis& a) {
   if (a.advice.tasks.empty()) return section;
   constexpr std::size_t kShown = 3;
   section.blocks.emplace_back(Paragraph{fmt::format(
-      "The widest interval is that of {}: 95 % within +-{:.2g} % of the standard model's value. Foretold from the "
+      "The widest interval is that of {}: 95 % within +-{:.2g} % of the standard model's value. Predicted from the "
       "exact sensitivities of "
       "{} tasks that were not performed, at the estimate and with the controls with which the standard model follows "
       "them: what the widest interval would be with one of them added.",
@@ -132,7 +132,7 @@ Section advice_section(const MuscleAnalysis& a) {
   if (a.advice.of_prior)
     section.blocks.emplace_back(Paragraph{
         "No parameter is identified, and no single task would make one so: these widths are nearly the "
-        "priors', sensitivities change within them, and what a task brings may be far from what is foretold."});
+        "priors', sensitivities change within them, and what a task brings may be far from what is predicted."});
   else if (!a.advice.left_to_prior.empty())
     section.blocks.emplace_back(
         Paragraph{fmt::format("Only parameters count that are identified, or would be with one of these tasks. Left to "

@@ -83,8 +83,8 @@ struct OtherReading {
 };
 
 /// `raised` is W with equation error.
-OtherReading read_otherwise(const internal::RegressionAnalysis& analysis, const RegressionEstimate& candidate,
-                            const Eigen::MatrixXd& raised) {
+OtherReading with_other_errors(const internal::RegressionAnalysis& analysis, const RegressionEstimate& candidate,
+                               const Eigen::MatrixXd& raised) {
   const Eigen::MatrixXd& W = analysis.data().error_covariance;
   OtherReading out;
   out.too_large = candidate.error_scale > 1.0;
@@ -196,7 +196,7 @@ RegressionComparison compare(const RegressionData& data, const RegressionOptions
   result.checks.push_back(scale);
   const Eigen::MatrixXd raised = with_equation_error(analysis.triangle(), data.error_covariance, analysis.rows());
   if (const auto theta = analysis.theta_under(Method::kGtls, raised)) result.theta_with_equation_error = *theta;
-  const OtherReading other = read_otherwise(analysis, candidate, raised);
+  const OtherReading other = with_other_errors(analysis, candidate, raised);
   const Evidence sensitivity = sensitivity_row(other, candidate);
   result.checks.push_back(sensitivity);
 

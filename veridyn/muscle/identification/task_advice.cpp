@@ -21,7 +21,7 @@ namespace {
 using estimation::OutputErrorOptions;
 using estimation::RowMatrix;
 
-/// View of an estimate whose intervals are foretold.
+/// View of an estimate whose intervals are predicted.
 class Foretelling {
  public:
   Foretelling(const MuscleParametricModel& model, const TaskEstimate& estimate, bool free_starts)
