@@ -64,7 +64,7 @@ struct Consistency {
   std::vector<ChannelRelation> relations;
   /// The fewest faults that explain all relations that are off; several sets where these explain them as well. Empty
   /// where nothing is off, and where no set of at most three faults explains it.
-  std::vector<std::vector<ChannelFault>> explanations;
+  std::vector<std::vector<ChannelFault>> explanations = {};
 
   [[nodiscard]] bool is_off() const;
   /// Of one of several explanations: those that all have.

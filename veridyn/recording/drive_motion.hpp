@@ -43,7 +43,7 @@ using ChannelNames = PerInertialChannel<std::string>;
 /// A drive on an even grid; a signal that is missing is empty, a value that is missing NaN. Angles are not wrapped.
 struct DriveMotion {
   numerics::UniformGrid grid{.step = 0.02};
-  PerInertialChannel<std::vector<double>> signals;
+  PerInertialChannel<std::vector<double>> signals = {};
   /// In which the numbers were taken to be recorded; of a signal that is not named, SI.
   PerInertialChannel<Unit> recorded_in = si_units();
   ChannelNames names = standard_names();

@@ -12,7 +12,7 @@ inline constexpr double kNoiseKnownTo = 4.0;
 /// Correlation of neighbouring residuals from which they are motion that the model lacks. Bartlett (1946): that of
 /// white noise has a standard deviation of 1/sqrt(n), so that this is three of them for 100 values, and far beyond
 /// chance for the thousands of a recording.
-inline constexpr double kAutocorrelated = 0.3;
+inline constexpr double kAutocorrelatedFrom = 0.3;
 
 /// p below which estimates from two parts differ by more than their error bars: intervals are widened (Birge 1932). The
 /// usual level; one pair in twenty by chance.
@@ -29,9 +29,9 @@ inline constexpr double kHoldOutFailed = 0.3;
 
 /// Share of the variance that may be neither modelled nor noise of the sensors; `identify.max_unmodelled` sets another.
 /// (2 of 199 clean flights: docs/judgement.md.)
-inline constexpr double kUnmodelledShare = 0.1;
+inline constexpr double kMostUnmodelled = 0.1;
 
 /// Variance inflation from which regressors move together (Klein & Morelli 2006, section 5.5).
-inline constexpr double kVarianceInflation = 10.0;
+inline constexpr double kMostInflation = 10.0;
 
 }  // namespace veridyn::estimation

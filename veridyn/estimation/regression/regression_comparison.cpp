@@ -144,7 +144,7 @@ Evidence collinearity(const RegressionEstimate& estimate, bool noise_alone) {
     if (p.status == ParameterStatus::kNotExcited || p.status == ParameterStatus::kFixed) continue;
     inflation = std::max(inflation, p.variance_inflation);
     all.push_back(p.name);
-    if (p.variance_inflation > kVarianceInflation) together.push_back(p.name);
+    if (p.variance_inflation > kMostInflation) together.push_back(p.name);
   }
   // The condition number is that of all directions; those that are not excited are held and reported as such.
   const bool held = !estimate.unexcited.empty();

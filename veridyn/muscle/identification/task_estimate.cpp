@@ -236,7 +236,7 @@ class TaskEstimation {
   [[nodiscard]] bool explained() const {
     const std::vector<RowMatrix> e = residuals();
     if (noise_.size() == 0)
-      return lag1_of(e) < estimation::kAutocorrelated || share_of_motion(e, measured_) < kIntegrationShare;
+      return lag1_of(e) < estimation::kAutocorrelatedFrom || share_of_motion(e, measured_) < kIntegrationShare;
     const double freedom = std::max(1.0, static_cast<double>(values_) - unknowns());
     return squares_of(e, scale()) / freedom < 1.0 + kWorthASearch_sigma * std::sqrt(2.0 / freedom);
   }

@@ -131,11 +131,12 @@ TEST(DriveEvidence, NamesWhatIsWrongWithADrive) {
       {"steering twice", test::scaled({"steer"}, 2.0), Check::kWrongChannel, Outcome::kFailed, "steer", Cause::kScale},
       {"steering ratio 1.3", test::scaled({"steer"}, 1.3), Check::kWrongChannel, Outcome::kCare, "steer",
        Cause::kScale},
-      {"yaw rate late", test::delayed({"yaw_rate"}, 0.15), Check::kSteeringOrder, Outcome::kCare, "yaw_rate",
+      {"yaw rate late", test::delayed({"yaw_rate"}, 0.15), Check::kSteeringOrder, Outcome::kCare, "steer, yaw_rate",
        Cause::kDelay},
-      {"yaw rate very late", test::delayed({"yaw_rate"}, 0.5), Check::kSteeringOrder, Outcome::kFailed, "yaw_rate",
+      {"yaw rate very late", test::delayed({"yaw_rate"}, 0.5), Check::kSteeringOrder, Outcome::kFailed,
+       "steer, yaw_rate", Cause::kDelay},
+      {"steering late", test::delayed({"steer"}, 0.15), Check::kSteeringOrder, Outcome::kCare, "steer, yaw_rate",
        Cause::kDelay},
-      {"steering late", test::delayed({"steer"}, 0.15), Check::kSteeringOrder, Outcome::kCare, "steer", Cause::kDelay},
       {"steering frozen", test::frozen({"steer"}, 0.1), Check::kFrozenSteering, Outcome::kFailed, "steer",
        Cause::kFrozen},
       {"yaw rate frozen", test::frozen({"yaw_rate"}, 0.1), Check::kFrozenSamples, Outcome::kFailed, "yaw_rate",
@@ -276,7 +277,7 @@ TEST(DriveEvidence, JudgesTheDelayThatTheModelFinds) {
     const Evidence row = steering_row(steering_late(), with_delay(value, sigma));
     EXPECT_EQ(row.check, Check::kSteeringDelay);
     EXPECT_EQ(row.outcome, outcome) << value << " +- " << sigma;
-    EXPECT_EQ(row.about, value < 0.0 ? "steer" : "yaw_rate");
+    EXPECT_EQ(row.about, "steer, yaw_rate");
     EXPECT_EQ(row.cause, outcome == Outcome::kPassed ? Cause::kNone : Cause::kDelay);
     EXPECT_EQ(advice_of(row).empty(), outcome == Outcome::kPassed) << value << " +- " << sigma;
   }

@@ -137,7 +137,7 @@ std::vector<estimation::Parameter> weak_by_collinearity(std::vector<estimation::
   const auto row = std::ranges::find_if(rows, estimation::is_collinearity);
   if (row == rows.end() || row->passed()) return parameters;
   for (estimation::Parameter& p : parameters)
-    if (p.status == estimation::ParameterStatus::kIdentified && p.variance_inflation > estimation::kVarianceInflation)
+    if (p.status == estimation::ParameterStatus::kIdentified && p.variance_inflation > estimation::kMostInflation)
       p.status = estimation::ParameterStatus::kWeak;
   return parameters;
 }

@@ -28,7 +28,7 @@ struct IdentifyOptions {
   double min_holdout_r2 = estimation::kHoldOutFailed;
   /// `max_unmodelled`: largest share of the coefficient's variance that may be neither modelled nor noise of the
   /// sensors.
-  double max_unmodelled = estimation::kUnmodelledShare;
+  double max_unmodelled = estimation::kMostUnmodelled;
   /// `contradiction_level`: identification and hold-out data, estimated separately, must agree at this level
   /// (chi-square).
   double contradiction_level = estimation::kPartsContradict;

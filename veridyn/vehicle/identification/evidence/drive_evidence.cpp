@@ -81,12 +81,16 @@ std::optional<Evidence> frozen_steering(const DriveSignals& signals, std::span<c
   return std::move(row).with("begin", at);
 }
 
-/// Of a row that found one of the two late: which, and by how much.
+/// Of a row that compared the two: which is late, and by how much; or the other is early.
 Evidence with_late(Evidence row) {
-  row.about = row.value < 0.0 ? "steer" : "yaw_rate";
+  row.about = "steer, yaw_rate";
   if (!row.passed()) row.cause = Cause::kDelay;
+  const bool steer = row.value < 0.0;
   const double late = std::abs(row.value);
-  return std::move(row).with("late", late);
+  return std::move(row)
+      .with("late", late)
+      .with("which", std::string(steer ? "steer" : "yaw_rate"))
+      .with("other", std::string(steer ? "yaw_rate" : "steer"));
 }
 
 Evidence row_by_signals(const recording::DelayReport& report, bool misled) {

@@ -30,8 +30,7 @@ using estimation::passed_or;
 using estimation::Purpose;
 using estimation::row_of;
 
-/// Correlation of neighbouring residuals from which they count as autocorrelated.
-constexpr double kAutocorrelated = 0.3;
+using estimation::kAutocorrelatedFrom;
 double percent_explained(const estimation::PredictedQuantity& q) { return 100.0 * std::max(0.0, q.fit.r2); }
 
 /// A residual against what sensors and noisy steering leave, and the share of the output's power that is neither
@@ -52,7 +51,7 @@ ResidualFinding check_residual(const estimation::PredictedQuantity& q, double si
   }
   const estimation::Tolerance& limits = estimation::info_of(Check::kAutocorrelatedResidual).tolerance;
   Evidence row = row_of(Check::kAutocorrelatedResidual, q.name,
-                        q.lag1 > kAutocorrelated ? estimation::outcome_of(ratio, 0.0, limits) : Outcome::kPassed);
+                        q.lag1 > kAutocorrelatedFrom ? estimation::outcome_of(ratio, 0.0, limits) : Outcome::kPassed);
   if (!row.passed()) row.cause = Cause::kMissingTerm;
   row.value = ratio;
   row.limit = row.outcome == Outcome::kFailed ? limits.highest : limits.high;
@@ -118,7 +117,7 @@ Evidence check_residual_on_holdout(const estimation::PredictedQuantity& there,
                                    const estimation::PredictedQuantity& here) {
   const double ratio = there.fit.rmse / here.fit.rmse;
   const double limit = estimation::info_of(Check::kHoldOutResidual).tolerance.high;
-  const bool systematic = there.lag1 > kAutocorrelated && (ratio > limit || !(here.lag1 > kAutocorrelated));
+  const bool systematic = there.lag1 > kAutocorrelatedFrom && (ratio > limit || !(here.lag1 > kAutocorrelatedFrom));
   Evidence row = row_of(Check::kHoldOutResidual, "yaw_rate", passed_or(!systematic, Outcome::kCare));
   if (systematic) row.cause = Cause::kMissingTerm;
   row.value = ratio;

@@ -31,7 +31,7 @@ struct VehicleIdentifyOptions {
   double significance = 0.05;    ///< `significance`: level of the t-tests
   double min_holdout_r2 = estimation::kHoldOutFailed;   ///< `min_holdout_r2`: of the predicted yaw rate; below it everything is rejected
   /// `max_unmodelled`: largest share of an output's power that may be left as autocorrelated residual.
-  double max_unmodelled = estimation::kUnmodelledShare;
+  double max_unmodelled = estimation::kMostUnmodelled;
   double contradiction_level = estimation::kPartsContradict;  ///< `contradiction_level`: p below which methods or data parts contradict
   /// `max_relative_sigma`: a stiffness or inertia whose standard error is a larger share of it counts as not excited.
   double max_relative_sigma = 0.25;
