@@ -61,7 +61,6 @@ TEST(SteeringDelay, IsFoundOnABicycleAndNotRaisedWhereThereIsNone) {
   EXPECT_NEAR(late.delay_s, -0.03, 0.002);
   EXPECT_GT(std::abs(late.I_z_error), 0.3);
   EXPECT_EQ(late.about, "steer, yaw_rate");
-  EXPECT_EQ(std::get<std::string>(late.figure("which")->value), "steer");
 }
 
 // The advice, followed: given the delay, the drive passes again.
