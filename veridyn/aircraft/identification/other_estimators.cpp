@@ -7,8 +7,8 @@
 #include <cmath>
 #include <iterator>
 
-#include "veridyn/estimation/judgement/evidence.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/estimation/judgement/evidence.hpp"
 #include "veridyn/estimation/regression/bootstrap.hpp"
 #include "veridyn/estimation/regression/frequency_domain.hpp"
 

@@ -10,11 +10,11 @@
 #include <map>
 #include <utility>
 
-#include "veridyn/estimation/judgement/evidence.hpp"
 #include "veridyn/aircraft/model/atmosphere.hpp"
 #include "veridyn/aircraft/model/still_air_rate.hpp"
 #include "veridyn/aircraft/sensors/vane_kinematics.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/estimation/judgement/evidence.hpp"
 #include "veridyn/numerics/rotation.hpp"
 #include "veridyn/numerics/threads/parallel.hpp"
 

@@ -8,8 +8,8 @@
 #include "veridyn/aircraft/model/aero_model.hpp"
 #include "veridyn/core/enum_array.hpp"
 #include "veridyn/core/study.hpp"
-#include "veridyn/estimation/regression/regression.hpp"
 #include "veridyn/estimation/judgement/limits.hpp"
+#include "veridyn/estimation/regression/regression.hpp"
 #include "veridyn/estimation/regression/structure_search.hpp"
 
 namespace veridyn::aircraft {

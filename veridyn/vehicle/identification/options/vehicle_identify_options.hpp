@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "veridyn/core/study.hpp"
+#include "veridyn/estimation/judgement/limits.hpp"
 #include "veridyn/vehicle/identification/options/drive_model_options.hpp"
 #include "veridyn/vehicle/identification/options/drive_structure.hpp"
-#include "veridyn/estimation/judgement/limits.hpp"
 #include "veridyn/vehicle/identification/options/vehicle_method.hpp"
 
 namespace veridyn::vehicle {
@@ -29,10 +29,12 @@ struct VehicleIdentifyOptions {
   DriveModelOptions model = {};  ///< `tyre`, `estimate`, `[identify.prior]`, ...: see DriveModelOptions
   double signal_to_noise = 1.0;  ///< `signal_to_noise`: S/n of the excitation threshold, 1 to 10
   double significance = 0.05;    ///< `significance`: level of the t-tests
-  double min_holdout_r2 = estimation::kHoldOutFailed;   ///< `min_holdout_r2`: of the predicted yaw rate; below it everything is rejected
+  double min_holdout_r2 =
+      estimation::kHoldOutFailed;  ///< `min_holdout_r2`: of the predicted yaw rate; below it everything is rejected
   /// `max_unmodelled`: largest share of an output's power that may be left as autocorrelated residual.
   double max_unmodelled = estimation::kMostUnmodelled;
-  double contradiction_level = estimation::kPartsContradict;  ///< `contradiction_level`: p below which methods or data parts contradict
+  double contradiction_level =
+      estimation::kPartsContradict;  ///< `contradiction_level`: p below which methods or data parts contradict
   /// `max_relative_sigma`: a stiffness or inertia whose standard error is a larger share of it counts as not excited.
   double max_relative_sigma = 0.25;
   /// `[identify.uncertainty]`: standard deviations of what is taken as known: `mass` [kg], `a`, `b` [m]. Motion alone
