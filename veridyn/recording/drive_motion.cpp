@@ -25,6 +25,11 @@ ChannelNames DriveMotion::standard_names() {
   return names;
 }
 
+void DriveMotion::take_unit(InertialChannel to, const Channel& channel) {
+  if (channel.recorded_unit.empty() || channel.recorded_unit == "1") return;
+  if (const Unit unit = parse_unit(channel.recorded_unit); unit.same_dimension(recorded_in[to])) recorded_in[to] = unit;
+}
+
 DriveMotion drive_motion(const Recording& recording) {
   DriveMotion m;
   const TimeSpan span = recording.span();
@@ -40,8 +45,7 @@ DriveMotion drive_motion(const Recording& recording) {
     if (si[to].same_dimension(si[kYaw])) numerics::unwrap_angles(whole.value);
     m.signals[to] = interpolated(whole, times);
     m.names[to] = name;
-    if (channel->recorded_unit.empty() || channel->recorded_unit == "1") return;
-    if (const Unit unit = parse_unit(channel->recorded_unit); unit.same_dimension(si[to])) m.recorded_in[to] = unit;
+    m.take_unit(to, *channel);
   };
   for (const InertialChannel channel : enumerators<InertialChannel, kInertialChannels>())
     take(channel, kInertialChannelNames[channel]);

@@ -51,6 +51,8 @@ struct DriveMotion {
   bool course_for_yaw = false;  ///< kYaw is the direction of motion, which has the sideslip
 
   [[nodiscard]] bool has(InertialChannel channel) const { return !signals[channel].empty(); }
+  /// Takes the unit in which a channel was recorded; SI where that is not known or of another dimension.
+  void take_unit(InertialChannel to, const Channel& channel);
   [[nodiscard]] static PerInertialChannel<Unit> si_units();
   [[nodiscard]] static ChannelNames standard_names();
 };

@@ -51,7 +51,7 @@ std::string_view to_string(Cause cause) {
 
 Evidence row_of(Check check, std::string about, double value, double sigma) {
   const CheckInfo& info = info_of(check);
-  // No number is no reason to pass.
+  // A statistic that is missing does not pass.
   Evidence row =
       row_of(check, std::move(about), std::isnan(value) ? Outcome::kMissing : outcome_of(value, sigma, info.tolerance));
   row.value = value;

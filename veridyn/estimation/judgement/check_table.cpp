@@ -84,6 +84,13 @@ std::string source_of(const CheckInfo& info) {
   return {};
 }
 
+std::string list_of(Purposes purposes) {
+  std::string list;
+  for (const Purpose purpose : kPurposes)
+    if (purposes.contains(purpose)) list += fmt::format("{}{}", list.empty() ? "" : ", ", to_string(purpose));
+  return list;
+}
+
 std::vector<const CheckInfo*> checks_of(CheckedOf of) {
   std::vector<const CheckInfo*> found;
   for (const CheckInfo& info : all_checks())
@@ -98,17 +105,13 @@ std::string checks_in_markdown() {
                         to_string(of));
     text += "|---|---|---|---|---|---|\n";
     for (const CheckInfo* info : checks_of(of)) {
-      std::string purposes;
-      for (const Purpose purpose : kPurposes)
-        if (info->bears_on.contains(purpose))
-          purposes += fmt::format("{}{}", purposes.empty() ? "" : ", ", to_string(purpose));
       const std::string unit =
           info->unit.empty() || info->unit == "1" ? std::string() : fmt::format(" [{}]", info->unit);
       std::string source = source_of(*info);
       if (!info->key.empty()) source += fmt::format("{}set by `{}`", source.empty() ? "" : "; ", info->key);
       text += fmt::format("| {} | {}{} | {} | {} | {} | {} |\n", in_cell(info->name), in_cell(info->compares), unit,
-                          in_cell(rule_of(*info, Outcome::kCare)), in_cell(rule_of(*info, Outcome::kFailed)), purposes,
-                          in_cell(source));
+                          in_cell(rule_of(*info, Outcome::kCare)), in_cell(rule_of(*info, Outcome::kFailed)),
+                          list_of(info->bears_on), in_cell(source));
     }
     text += "\n";
   }

@@ -18,6 +18,9 @@ namespace veridyn::estimation {
 /// "campaign: SampleEvidence: 0 alarms of 200 clean recordings".
 [[nodiscard]] std::string source_of(const CheckInfo& info);
 
+/// "data, parameters".
+[[nodiscard]] std::string list_of(Purposes purposes);
+
 /// Checks of one kind, in the order of the table.
 [[nodiscard]] std::vector<const CheckInfo*> checks_of(CheckedOf of);
 

@@ -60,7 +60,7 @@ ParameterStatus read_status(const std::string& text, const std::string& place) {
                          text));
 }
 
-/// Files of versions before 0.9 have no number.
+/// Files of versions before 0.9 have no schema.
 void check_schema(const ordered_json& root, const std::string& file) {
   if (!root.is_object() || !root.contains("schema")) return;
   if (root["schema"] != kEstimateSchema)

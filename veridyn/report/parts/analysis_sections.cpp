@@ -9,6 +9,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/judgement/check.hpp"
+#include "veridyn/estimation/judgement/check_table.hpp"
 #include "veridyn/estimation/judgement/reasons.hpp"
 #include "veridyn/report/document/number_format.hpp"
 #include "veridyn/report/parts/estimate_tables.hpp"
@@ -182,14 +183,10 @@ Section evidence_section(const estimation::Estimate& estimate) {
   std::ranges::stable_sort(rows, std::greater(), [](const estimation::Evidence* row) { return row->outcome; });
   for (const estimation::Evidence* const each : rows) {
     const estimation::Evidence& row = *each;
-    std::string purposes;
-    for (const estimation::Purpose purpose : estimation::kPurposes)
-      if (row.bears_on.contains(purpose))
-        purposes += fmt::format("{}{}", purposes.empty() ? "" : ", ", estimation::to_string(purpose));
     table.rows.push_back(
         {.cells = {text_cell(row.about), text_cell(std::string(estimation::name_of(row))), outcome_cell(row),
                    number_cell(row.value), number_cell(row.limit), text_cell(std::string(estimation::unit_of(row))),
-                   text_cell(estimation::says(row)), text_cell(purposes)}});
+                   text_cell(estimation::says(row)), text_cell(estimation::list_of(row.bears_on))}});
   }
   section.blocks.emplace_back(std::move(table));
   return section;

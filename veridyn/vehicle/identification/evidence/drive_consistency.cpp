@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/recording/grid_signals.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -23,16 +24,6 @@ using recording::ChannelFault;
 using recording::ChannelRelation;
 using enum recording::InertialChannel;
 
-/// A channel on the grid of the signals.
-void take(recording::DriveMotion& motion, recording::InertialChannel to, const Channel* channel) {
-  if (channel == nullptr || channel->size() < 2) return;
-  std::vector<double> times(motion.grid.count);
-  for (std::size_t k = 0; k < times.size(); ++k) times[k] = motion.grid.at(k);
-  Channel whole = *channel;
-  if (whole.unit.si_name() == "rad") numerics::unwrap_angles(whole.value);
-  motion.signals[to] = recording::interpolated(whole, times);
-}
-
 recording::DriveMotion motion_of(const recording::MappedRecording& mapped, const DriveSignals& signals) {
   recording::DriveMotion motion{.grid = signals.grid};
   motion.names[kGyroZ] = "yaw_rate";
@@ -44,22 +35,24 @@ recording::DriveMotion motion_of(const recording::MappedRecording& mapped, const
                                                                                      {kSteer, DriveSignal::kSteer},
                                                                                      {kPosX, DriveSignal::kX},
                                                                                      {kPosY, DriveSignal::kY}}};
-  const auto unit_of = [&](recording::InertialChannel to, std::string_view name) {
+  const auto find = [&](std::string_view name) {
     const Channel* channel = mapped.recording.find(name);
-    if (channel == nullptr || channel->recorded_unit.empty() || channel->recorded_unit == "1") return;
-    if (const Unit unit = parse_unit(channel->recorded_unit); unit.same_dimension(motion.recorded_in[to]))
-      motion.recorded_in[to] = unit;
+    return channel != nullptr && channel->size() > 1 ? channel : nullptr;
   };
   for (const auto& [to, from] : kSame) {
     if (!signals[from].available()) continue;
     motion.signals[to] = signals[from].value;
-    unit_of(to, kDriveSignalNames[from]);
+    if (const Channel* channel = find(kDriveSignalNames[from])) motion.take_unit(to, *channel);
   }
-  unit_of(kGyroZ, "gyro_z");
-  take(motion, kAccelZ, mapped.recording.find("accel_z"));
-  if (!motion.has(kYaw)) {
-    take(motion, kYaw, mapped.recording.find("course"));
-    motion.course_for_yaw = motion.has(kYaw);
+  if (const Channel* gyro = find("gyro_z")) motion.take_unit(kGyroZ, *gyro);
+  if (const Channel* up = find("accel_z")) {
+    motion.signals[kAccelZ] = recording::on_grid(*up, motion.grid);
+    motion.take_unit(kAccelZ, *up);
+  }
+  if (const Channel* course = find("course"); course != nullptr && !motion.has(kYaw)) {
+    motion.signals[kYaw] = recording::angle_on_grid(*course, motion.grid);
+    motion.take_unit(kYaw, *course);
+    motion.course_for_yaw = true;
     motion.names[kYaw] = "course";
   }
   return motion;
