@@ -12,6 +12,7 @@
 #include "apps/veridyn/run/version.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/progress.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/estimation/judgement/subject_grades.hpp"
 #include "veridyn/vehicle/identification/fit/estimated_vehicle.hpp"
 #include "veridyn/vehicle/identification/vehicle_identification.hpp"
@@ -67,7 +68,7 @@ int export_vehicle(const StudyRun& run) {
   if (estimate) {
     if (estimate->find("C_f") == nullptr)
       throw InputError(run.arguments.text("--estimate-file"), "is not an estimate of a vehicle: it has no C_f");
-    const VehicleIdentifyOptions options = VehicleIdentifyOptions::read(root.table_or_empty("identify"));
+    const VehicleIdentifyOptions options = VehicleIdentifyOptions::keys().read(root.table_or_empty("identify"));
     vehicle = estimated_vehicle(std::move(vehicle), estimate->parameters, options.model);
   }
   const std::string& format = run.arguments.text("--format");

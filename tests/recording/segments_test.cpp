@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "tests/io/support.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::recording {
 namespace {
@@ -15,8 +16,7 @@ using testing::message_of;
 std::string refusal(const std::string& toml) {
   const Study study = Study::parse("[segments]\n" + toml, "study.toml", ".");
   return message_of([&] {
-    SegmentOptions options;
-    options.read_keys(study.root().table("segments"));
+    (void)SegmentOptions::keys().read(study.root().table("segments"));
     (void)read_spans(study.root().table("segments"), "spans");
   });
 }
@@ -127,8 +127,8 @@ TEST(Segments, RefuseSpansAndSharesThatMakeNoSense) {
   EXPECT_THAT(refusal("spans = [1, 2, 3]\n"), HasSubstr("spans: has 3 numbers; must be pairs of begin and end"));
   EXPECT_THAT(refusal("spans = [2, 1]\n"), HasSubstr("spans: segment 2 s to 1 s has no length"));
   EXPECT_THAT(refusal("spans = [1, 5, 4, 8]\n"), HasSubstr("overlap or are not in order"));
-  EXPECT_THAT(refusal("holdout = 0.9\n"), HasSubstr("holdout: 0.9 must be a share from 0 to 0.8"));
-  EXPECT_THAT(refusal("guard = -1\n"), HasSubstr("guard: -1 s must be >= 0"));
+  EXPECT_THAT(refusal("holdout = 0.9\n"), HasSubstr("holdout: = 0.9 must be from 0 to 0.8"));
+  EXPECT_THAT(refusal("guard = -1\n"), HasSubstr("guard: = -1 must be >= 0"));
 }
 
 }  // namespace

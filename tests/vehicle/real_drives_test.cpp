@@ -73,7 +73,7 @@ TEST(RealDrives, HunterIsDrivenOpenLoopOverWholeRuns) {
   Progress silent;
   VehicleStudy drive = read_study(Study::load(study_file("hunter_se.toml")), silent);
   drive.open_loop.times.duration_s = 600.0;
-  drive.validate_on_holdout_only = true;
+  drive.validation.holdout_only = true;
   estimation::Estimate estimate;
   estimate.covariance = Eigen::MatrixXd::Zero(3, 3);
   for (const auto& [name, value] : {std::pair{"C_f", 12.7}, std::pair{"C_r", 516.0}, std::pair{"I_z", 0.0726}})

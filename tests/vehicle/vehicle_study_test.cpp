@@ -24,7 +24,7 @@ TEST(VehicleStudy, IdentifiesARecordingThatItIsGiven) {
   VehicleStudy read =
       vehicle::read_study(study, record_drive(lively_drive(family_car(), 1), reference_drive_sensors(), 1), silent);
   study.root().finish();
-  EXPECT_EQ(read.identify.mass_sigma, 15.0);
+  EXPECT_EQ(read.identify.given.mass, 15.0);
   EXPECT_EQ(read.vehicle.I_z, 1500.0 * 1.2 * 1.5);
   VehicleAnalysis analysis = identify(read, silent);
   const estimation::Parameter* C_f = analysis.estimate.find("C_f");

@@ -10,6 +10,12 @@
 
 namespace veridyn {
 
+// The keys of tables: veridyn/core/study_keys.hpp.
+struct StudyKey;
+struct StudyKeys;
+template <typename T>
+class KeyTable;
+
 namespace internal {
 struct StudyNode;
 }

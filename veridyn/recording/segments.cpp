@@ -7,6 +7,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/rank.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::recording {
 namespace {
@@ -27,16 +28,23 @@ void guard(std::vector<TimeSpan>& spans, const std::vector<TimeSpan>& others, do
 
 }  // namespace
 
-void SegmentOptions::read_keys(const StudyTable& table) {
-  window_s = table.positive_or("window", "s", window_s);
-  merge_s = table.number_or("merge", "s", merge_s);
-  min_duration_s = table.positive_or("min_duration", "s", min_duration_s);
-  holdout = table.number_or("holdout", "1", holdout);
-  if (!(holdout >= 0.0 && holdout <= 0.8))
-    table.fail("holdout", fmt::format("{:g} must be a share from 0 to 0.8", holdout));
-  block_s = table.positive_or("block", "s", block_s);
-  guard_s = table.number_or("guard", "s", guard_s);
-  if (!(guard_s >= 0.0)) table.fail("guard", fmt::format("{:g} s must be >= 0", guard_s));
+const KeyTable<SegmentOptions>& SegmentOptions::keys() {
+  using O = SegmentOptions;
+  static const auto table =
+      KeyTable<O>("segments", "Which stretches of a recording are used, and what for.")
+          .number("window", &O::window_s, "s", kPositive, "excitation is measured over this long")
+          .number("merge", &O::merge_s, "s", kNotNegative, "excited stretches closer than this are one")
+          .number("min_duration", &O::min_duration_s, "s", kPositive, "shorter stretches are dropped")
+          .number("holdout", &O::holdout, "1", from_to(0.0, 0.8),
+                  "share of the excited time that identification never sees")
+          .number("block", &O::block_s, "s", kPositive,
+                  "stretches are assigned to identification and hold-out in blocks of this length")
+          .number("guard", &O::guard_s, "s", kNotNegative, "cut from both sides where blocks of different use meet");
+  return table;
+}
+
+StudyKey spans_key(std::string name, std::string says) {
+  return {std::move(name), "s", "`[10, 60, 80, 95]`: begin and end of each", "searched", std::move(says), true};
 }
 
 double total_s(std::span<const TimeSpan> spans) {

@@ -14,15 +14,14 @@ namespace veridyn::recording {
 
 /// How every domain chooses excited stretches of a recording. Study table `[segments]`; every key is optional.
 struct SegmentOptions {
-  double window_s = 4.0;        ///< `window`: excitation is measured over this long
-  double merge_s = 3.0;         ///< `merge`: excited stretches closer than this are one
-  double min_duration_s = 3.0;  ///< `min_duration`
-  double holdout = 1.0 / 3.0;   ///< `holdout`: share kept from identification, in [0, 0.8]
-  double block_s = 10.0;  ///< `block`: stretches are assigned to identification and hold-out in blocks of this length
-  double guard_s = 0.5;   ///< `guard`: cut from both sides where blocks of different use meet, >= 0
+  double window_s = 4.0;
+  double merge_s = 3.0;
+  double min_duration_s = 3.0;
+  double holdout = 1.0 / 3.0;
+  double block_s = 10.0;
+  double guard_s = 0.5;
 
-  /// Takes the keys that are there. @throws InputError for values that make no sense.
-  void read_keys(const StudyTable& table);
+  [[nodiscard]] static const KeyTable<SegmentOptions>& keys();
 };
 
 /// Excited stretches of a recording and how they are used.
@@ -40,6 +39,8 @@ struct Segments {
 /// `key = [10, 60, 80, 95]`: begin and end of each [s]; none when the key is missing.
 /// @throws InputError for an odd number of values, a span without length, spans that overlap or are not in order.
 [[nodiscard]] std::vector<TimeSpan> read_spans(const StudyTable& table, std::string_view key);
+/// Such a key of a table of keys, for stretches that are given instead of searched.
+[[nodiscard]] StudyKey spans_key(std::string name, std::string says);
 
 /// Maximal stretches of samples for which `holds(k)`; one sample alone is a stretch without length.
 template <typename Predicate>

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/vehicle/identification/evidence/drive_evidence.hpp"
 #include "veridyn/vehicle/identification/fit/estimated_drive_model.hpp"
@@ -35,22 +36,19 @@ VehicleStudy read_tables(const Study& study) {
   out.subject_name = vehicle.name.empty() ? "vehicle" : vehicle.name;
   out.vehicle = vehicle.parameters;
   out.inputs = vehicle.inputs;
-  out.signals = DriveSignalOptions::read(root.table_or_empty("signals"));
+  out.signals = DriveSignalOptions::keys().read(root.table_or_empty("signals"));
   VehicleParameters<double>& p = out.vehicle;
   const bool known = subject.has("builtin");
   if (!known && !subject.has("I_z")) p.I_z = p.mass * p.a * p.b;
   const PerWheel<double> load = static_loads(p, out.signals.gravity);
   if (!known && !subject.has("C_f")) p.C_f = kStiffnessPerLoad * load[kFrontLeft];
   if (!known && !subject.has("C_r")) p.C_r = kStiffnessPerLoad * load[kRearLeft];
-  out.segments = DriveSegmentOptions::read(root.table_or_empty("segments"));
-  out.identify = VehicleIdentifyOptions::read(root.table_or_empty("identify"));
+  out.segments = DriveSegmentOptions::keys().read(root.table_or_empty("segments"));
+  out.identify = VehicleIdentifyOptions::keys().read(root.table_or_empty("identify"));
   if (!known && !subject.has("cg_height")) p.cg_height = kHeightPerWheelbase * p.wheelbase();
   out.identify.model.gravity = out.signals.gravity;
-  out.track = DriveTrackOptions::read(root.table_or_empty("track"));
-  const std::vector<std::string> choices{"all", "holdout"};
-  const StudyTable validate = root.table_or_empty("validate");
-  out.validate_on_holdout_only = validate.choice_or("segments", choices, "all") == "holdout";
-  out.open_loop = DriveOpenLoopOptions::read(validate);
+  out.track = DriveTrackOptions::keys().read(root.table_or_empty("track"));
+  out.validation = DriveValidateOptions::keys().read(root.table_or_empty("validate"));
   return out;
 }
 
@@ -107,11 +105,11 @@ std::vector<TimeSpan> validation_spans(const DriveSegments& segments, bool holdo
 std::vector<estimation::Evidence> driven_open_loop(VehicleAnalysis& analysis, OpenLoopUse use,
                                                    const estimation::Estimate& estimate, const VehicleStudy& study,
                                                    Progress& progress) {
-  if (!study.open_loop.asked() || progress.interrupted()) return {};
+  if (!study.validation.open_loop.asked() || progress.interrupted()) return {};
   progress.stage("driving open loop");
   analysis.open_loop =
       drive_open_loop({analysis.signals, analysis.segments, use, study.vehicle, study.identify.model, estimate},
-                      study.open_loop, progress);
+                      study.validation.open_loop, progress);
   return open_loop_evidence(analysis.open_loop);
 }
 
@@ -199,7 +197,7 @@ VehicleAnalysis validate(const VehicleStudy& study, const estimation::Estimate& 
   out.signals = prepare_drive_signals(study.log.mapped, study.signals);
   out.segments = find_drive_segments(out.signals, study.segments, study.log.holdout_runs);
   progress.stage("validating");
-  const std::vector<TimeSpan> spans = validation_spans(out.segments, study.validate_on_holdout_only);
+  const std::vector<TimeSpan> spans = validation_spans(out.segments, study.validation.holdout_only);
   const EstimatedDriveModel given = model_of(estimate, study);
   VehicleIdentification& id = out.identification;
   id.identified = given.vehicle;
@@ -226,7 +224,7 @@ VehicleAnalysis validate(const VehicleStudy& study, const estimation::Estimate& 
     };
     add(recording_rows(
         drive_findings(study.log.mapped, out.signals, out.segments, given.vehicle, study.signals, progress), known));
-    add(driven_open_loop(out, study.validate_on_holdout_only ? OpenLoopUse::kOtherHoldout : OpenLoopUse::kOtherDrive,
+    add(driven_open_loop(out, study.validation.holdout_only ? OpenLoopUse::kOtherHoldout : OpenLoopUse::kOtherDrive,
                          estimate, study, progress));
     id.judgement = estimation::judge(id.checks);
     // Nothing was identified.

@@ -31,9 +31,7 @@ namespace veridyn::vehicle {
 ///                  static load per rad, or from the equation error)
 ///     [data]       see read_drive_log          [signals]   see DriveSignalOptions
 ///     [segments]   see DriveSegmentOptions     [identify]  see VehicleIdentifyOptions
-///     [track]      see DriveTrackOptions       [validate]  `segments = "all"` (default) or "holdout": where an
-///                                                          estimate of other data is validated; `open_loop`...: see
-///                                                          DriveOpenLoopOptions
+///     [track]      see DriveTrackOptions       [validate]  see DriveValidateOptions
 struct VehicleStudy {
   std::string name;
   std::uint64_t seed = 0;
@@ -44,8 +42,7 @@ struct VehicleStudy {
   DriveSegmentOptions segments;
   VehicleIdentifyOptions identify;
   DriveTrackOptions track;
-  bool validate_on_holdout_only = false;
-  DriveOpenLoopOptions open_loop;
+  DriveValidateOptions validation;
   std::vector<std::filesystem::path> inputs;  ///< files that were read
   std::vector<std::string> notes;
   std::map<std::string, double, std::less<>> truth;  ///< of a simulated drive, by parameter name; empty otherwise

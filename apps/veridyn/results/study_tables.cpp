@@ -7,6 +7,7 @@
 #include "veridyn/aircraft/aircraft_study.hpp"
 #include "veridyn/aircraft/sensors/channel_map.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/recording/study_data.hpp"
 #include "veridyn/vehicle/identification/signals/drive_log.hpp"
 #include "veridyn/vehicle/model/vehicle.hpp"
@@ -47,14 +48,11 @@ void finish_drive_study(const StudyTable& root, const Progress& progress, DriveT
     static_cast<void>(data.text_or("frame", ""));
     for (const StudyTable& run : data.tables("run")) static_cast<void>(run.text_or("frame", ""));
   }
-  static_cast<void>(vehicle::DriveSignalOptions::read(root.table_or_empty("signals")));
-  static_cast<void>(vehicle::DriveSegmentOptions::read(root.table_or_empty("segments")));
-  static_cast<void>(vehicle::VehicleIdentifyOptions::read(root.table_or_empty("identify")));
-  static_cast<void>(vehicle::DriveTrackOptions::read(root.table_or_empty("track")));
-  const std::vector<std::string> spans{"all", "holdout"};
-  const StudyTable validate = root.table_or_empty("validate");
-  static_cast<void>(validate.choice_or("segments", spans, "all"));
-  static_cast<void>(vehicle::DriveOpenLoopOptions::read(validate));
+  static_cast<void>(vehicle::DriveSignalOptions::keys().read(root.table_or_empty("signals")));
+  static_cast<void>(vehicle::DriveSegmentOptions::keys().read(root.table_or_empty("segments")));
+  static_cast<void>(vehicle::VehicleIdentifyOptions::keys().read(root.table_or_empty("identify")));
+  static_cast<void>(vehicle::DriveTrackOptions::keys().read(root.table_or_empty("track")));
+  static_cast<void>(vehicle::DriveValidateOptions::keys().read(root.table_or_empty("validate")));
   const auto check = [&](const auto& reader, std::initializer_list<const char*> tables) {
     try {
       static_cast<void>(reader(root));

@@ -16,9 +16,7 @@ namespace {
 
 TrackerOptions tracker_options_of(const std::string& keys) {
   const Study study = Study::parse("[track]\n" + keys, "study.toml");
-  TrackerOptions options;
-  options.read_keys(study.root().table("track"));
-  return options;
+  return TrackerOptions::keys().read(study.root().table("track"));
 }
 
 TEST(TrackerOptions, AMemoryIsTheTimeAfterWhichARowCountsFivePercent) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::aircraft {
 
@@ -15,7 +16,7 @@ std::string_view to_string(TrackFilter filter) { return filter == TrackFilter::k
 
 TrackOptions TrackOptions::read(const StudyTable& table) {
   TrackOptions o;
-  o.read_keys(table);
+  estimation::TrackerOptions::keys().read(table, o);
   if (table.has("coefficients")) {
     const std::vector<std::string> names(kCoefficientNames.begin(), kCoefficientNames.end());
     for (const std::string& name : table.texts("coefficients")) {

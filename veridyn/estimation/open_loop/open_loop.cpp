@@ -5,18 +5,27 @@
 #include <algorithm>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::estimation {
 
-OpenLoopTimes OpenLoopTimes::read(const StudyTable& table) {
-  OpenLoopTimes times;
-  times.duration_s = table.positive_or("open_loop", "s", times.duration_s);
-  times.start_s = table.positive_or("open_loop_start", "s", times.start_s);
-  if (times.duration_s > 0.0 && !(times.duration_s > times.start_s))
-    table.fail("open_loop", fmt::format("= {} s must be longer than open_loop_start = {} s, from which the initial "
-                                        "state is estimated",
-                                        times.duration_s, times.start_s));
-  return times;
+const KeyTable<OpenLoopTimes>& OpenLoopTimes::keys() {
+  using O = OpenLoopTimes;
+  static const auto table =
+      KeyTable<O>("validate")
+          .number("open_loop", &O::duration_s, "s", kPositive,
+                  "the model is run in windows of this length at most, by what is commanded alone")
+          .otherwise("none")
+          .number(
+              "open_loop_start", &O::start_s, "s", kPositive,
+              "of each window: its initial state and the offsets are estimated from it; what comes after is forecast")
+          .check([](const StudyTable& t, O& o) {
+            if (o.duration_s > 0.0 && !(o.duration_s > o.start_s))
+              t.fail("open_loop", fmt::format("= {} s must be longer than open_loop_start = {} s, from which the "
+                                              "initial state is estimated",
+                                              o.duration_s, o.start_s));
+          });
+  return table;
 }
 
 std::vector<std::string> OpenLoop::groups() const {

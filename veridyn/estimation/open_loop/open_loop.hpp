@@ -18,13 +18,11 @@ inline constexpr double kLeastForecast_s = 2.0;
 
 /// How long windows are. Keys of the study table `[validate]`, in every domain.
 struct OpenLoopTimes {
-  double duration_s = 0.0;  ///< `open_loop`: of each window, at most; 0: nothing is integrated
-  /// `open_loop_start`: the state at the window's beginning and the offsets are estimated from its first seconds; what
-  /// comes after is forecast.
-  double start_s = 2.0;
+  double duration_s = 0.0;  ///< of each window, at most; 0: nothing is integrated
+  double start_s = 2.0;     ///< of each window, of which its initial state and the offsets are estimated
 
-  /// Takes the keys that are there. @throws InputError for values that make no sense.
-  [[nodiscard]] static OpenLoopTimes read(const StudyTable& table);
+  /// Of the table `[validate]`.
+  [[nodiscard]] static const KeyTable<OpenLoopTimes>& keys();
 };
 
 /// A state over all windows of its group, forecast against measured.

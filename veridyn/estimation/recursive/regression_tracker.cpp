@@ -7,6 +7,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/estimation/judgement/agreement.hpp"
 #include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 #include "veridyn/numerics/statistics.hpp"
@@ -46,40 +47,55 @@ ChangeDetectionOptions detection_options(const TrackerOptions& options, double r
 
 }  // namespace
 
-void TrackerOptions::read_keys(const StudyTable& table) {
-  TrackerOptions& o = *this;
-  const std::vector<std::string> methods{"PCA-GTLS", "GTLS", "OLS"};
-  const std::string chosen = table.choice_or("method", methods, to_string(method));
-  o.method = chosen == "OLS" ? Method::kOls : chosen == "GTLS" ? Method::kGtls : Method::kPcaGtls;
-  const std::vector<std::string> kinds{"variable", "constant"};
-  o.forgetting.variable =
-      table.choice_or("forgetting", kinds, o.forgetting.variable ? "variable" : "constant") == "variable";
-  if (table.has("lambda")) {
-    if (table.has("memory")) table.fail("memory", "and lambda say the same thing; give one of them");
-    o.forgetting.lambda = table.number("lambda", "1");
-    o.memory_s = 0.0;
-  } else {
-    o.memory_s = table.positive_or("memory", "s", o.memory_s);
-  }
-  o.forgetting.lambda_min = table.number_or("lambda_min", "1", o.forgetting.lambda_min);
-  o.forgetting.K_a = table.number_or("K_a", "1", o.forgetting.K_a);
-  o.forgetting.K_b = table.number_or("K_b", "1", o.forgetting.K_b);
-  o.forgetting.gamma = table.number_or("gamma", "1", o.forgetting.gamma);
-  o.forgetting.row_weight = table.flag_or("row_weight", o.forgetting.row_weight);
-  o.forgetting.validate();
-  o.signal_to_noise = table.number_or("signal_to_noise", "1", o.signal_to_noise);
-  if (!(o.signal_to_noise >= 1.0 && o.signal_to_noise <= 10.0)) {
-    table.fail("signal_to_noise", fmt::format("= {} must be from 1 to 10", o.signal_to_noise));
-  }
-  o.detect_changes = table.flag_or("detect_changes", o.detect_changes);
-  o.detection.false_alarm_interval_s =
-      table.positive_or("false_alarm_interval", "s", o.detection.false_alarm_interval_s);
-  o.detection.block_s = table.positive_or("detection_block", "s", o.detection.block_s);
-  o.detection.learn_s = table.positive_or("detection_learning", "s", o.detection.learn_s);
-  o.detection.memory_s = table.positive_or("detection_memory", "s", o.detection.memory_s);
-  o.detection.settle_s = table.number_or("detection_settling", "s", o.detection.settle_s);
-  o.detection.validate();
-  o.history_Hz = table.positive_or("history_rate", "Hz", o.history_Hz);
+const KeyTable<TrackerOptions>& TrackerOptions::keys() {
+  using O = TrackerOptions;
+  const auto forgetting = [](auto member) {
+    return [member](O & o) -> auto& { return o.forgetting.*member; };
+  };
+  const auto detection = [](auto member) {
+    return [member](O & o) -> auto& { return o.detection.*member; };
+  };
+  using F = ForgettingOptions;
+  using D = ChangeDetectionOptions;
+  static const auto table =
+      KeyTable<O>("track", "How parameters are followed on line.")
+          .choice("method", &O::method,
+                  {{"PCA-GTLS", Method::kPcaGtls}, {"GTLS", Method::kGtls}, {"OLS", Method::kOls}},
+                  "`PCA-GTLS` holds what is not excited")
+          .number("memory", &O::memory_s, "s", kPositive, "a sample counts 5 % after this time")
+          .choice("forgetting", forgetting(&F::variable), {{"variable", true}, {"constant", false}},
+                  "`variable`: a shorter memory while innovations are large")
+          .number("lambda", forgetting(&F::lambda), "1", kAnyNumber, "weight of squares per row, in place of `memory`")
+          .otherwise("by `memory`")
+          .number("lambda_min", forgetting(&F::lambda_min), "1", kAnyNumber, "least weight of squares per row")
+          .number("K_a", forgetting(&F::K_a), "1", kAnyNumber,
+                  "window of the innovations' power, in multiples of the number of parameters")
+          .number("K_b", forgetting(&F::K_b), "1", kAnyNumber, "window of the noise's power, likewise; more than `K_a`")
+          .number("gamma", forgetting(&F::gamma), "1", kAnyNumber,
+                  "standard deviation of innovations over that of the noise from which they are large")
+          .flag("row_weight", forgetting(&F::row_weight),
+                "weights rows, not their squares, by the forgetting factor, which halves the memory: only to reproduce "
+                "published results")
+          .number("signal_to_noise", &O::signal_to_noise, "1", from_to(1.0, 10.0), "S/n of the excitation threshold")
+          .flag("detect_changes", &O::detect_changes, "innovations and the first parameter are watched for changes")
+          .number("false_alarm_interval", detection(&D::false_alarm_interval_s), "s", kPositive,
+                  "mean time between false alarms where nothing changes")
+          .number("detection_block", detection(&D::block_s), "s", kPositive, "innovations are averaged over this long")
+          .number("detection_learning", detection(&D::learn_s), "s", kPositive,
+                  "unchanged innovations are learned this long before they are watched")
+          .number("detection_memory", detection(&D::memory_s), "s", kPositive, "and followed with this memory")
+          .number("detection_settling", detection(&D::settle_s), "s", kAnyNumber,
+                  "not watched for this long after an alarm")
+          .number("history_rate", &O::history_Hz, "Hz", kPositive, "of what is kept for report and history.csv")
+          .check([](const StudyTable& t, O& o) {
+            if (t.has("lambda")) {
+              if (t.has("memory")) t.fail("memory", "and lambda say the same thing; give one of them");
+              o.memory_s = 0.0;
+            }
+            o.forgetting.validate();
+            o.detection.validate();
+          });
+  return table;
 }
 
 ForgettingOptions TrackerOptions::forgetting_at(double rate_Hz) const {

@@ -14,20 +14,15 @@
 
 namespace veridyn::estimation {
 
-/// How a regression is tracked on line. Keys of the study table `[track]`; every one is optional.
+/// How a regression is tracked on line. Study table `[track]`.
 struct TrackerOptions {
-  /// `method`: "PCA-GTLS" holds what is not excited; "GTLS"; "OLS".
   Method method = Method::kPcaGtls;
-  /// `memory`: time after which a sample counts 5 % [s]; or `lambda`: weight of squares per row. 0: lambda is given.
-  double memory_s = 100.0;
-  /// `forgetting = "variable"` or "constant"; `lambda`, `lambda_min`, `K_a`, `K_b`, `gamma`, `row_weight`.
+  double memory_s = 100.0;  ///< a sample counts 5 % after it; 0: the forgetting factor is given
   /// The noise is averaged over 500 n rows, so that a trigger lasts until the estimate has followed, and at least 33
   /// rows are remembered: fewer fit noise while no linear model holds, as in a stall.
   ForgettingOptions forgetting{.variable = true, .lambda_min = 0.97, .K_b = 500.0};
-  double signal_to_noise = 1.0;  ///< `signal_to_noise`: S/n of the excitation threshold, 1 to 10
-  bool detect_changes = true;    ///< `detect_changes`
-  /// `false_alarm_interval`, `detection_block`, `detection_memory`, `detection_learning`,
-  /// `detection_settling`: see ChangeDetectionOptions.
+  double signal_to_noise = 1.0;
+  bool detect_changes = true;
   ChangeDetectionOptions detection = {};
   /// Whether the innovations' mean and spread are watched. Not a key; domains choose.
   bool watch_innovations = true;
@@ -35,11 +30,9 @@ struct TrackerOptions {
   /// false alarms of `detection`. Its times of learning, memory and settling hold for both. Not a key; domains choose.
   ParameterWatchOptions watch = {};
   double watch_after_s = 0.0;  ///< rows before this are not watched: the estimate finds itself. Not a key
-  double history_Hz = 5.0;     ///< `history_rate`: of what is kept for the report
+  double history_Hz = 5.0;     ///< of what is kept for the report
 
-  /// Reads the keys above; a key that is not there keeps what `*this` says.
-  /// @throws InputError naming file, line and key.
-  void read_keys(const StudyTable& table);
+  [[nodiscard]] static const KeyTable<TrackerOptions>& keys();
   /// The forgetting factor at a rate of rows.
   [[nodiscard]] ForgettingOptions forgetting_at(double rate_Hz) const;
 };

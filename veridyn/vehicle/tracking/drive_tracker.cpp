@@ -11,6 +11,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/deg_per_g.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/estimation/recursive/tracking_evidence.hpp"
 #include "veridyn/estimation/result/analysis.hpp"
@@ -77,16 +78,22 @@ DriveTrackOptions::DriveTrackOptions() {
   detection.false_alarm_interval_s = 3.6e6;
 }
 
-DriveTrackOptions DriveTrackOptions::read(const StudyTable& table) {
-  DriveTrackOptions o;
-  o.read_keys(table);
-  o.pass_Hz = table.positive_or("pass_band", "Hz", o.pass_Hz);
-  o.start_sigma = table.positive_or("start_sigma", "1", o.start_sigma);
-  o.learning_s = table.number_or("learning", "s", o.learning_s);
-  if (!(o.learning_s >= 0.0)) table.fail("learning", fmt::format("= {} s must not be negative", o.learning_s));
-  const std::string_view estimate = table.renamed("estimate_file", "estimate");
-  if (table.has(estimate)) o.estimate_file = table.file(estimate).string();
-  return o;
+const KeyTable<DriveTrackOptions>& DriveTrackOptions::keys() {
+  using O = DriveTrackOptions;
+  static const auto table =
+      KeyTable<O>("track", "How cornering stiffnesses are followed on line.")
+          .with(estimation::TrackerOptions::keys())
+          .number("pass_band", &O::pass_Hz, "Hz", kPositive,
+                  "of the causal filters; lower ones remove more noise and are later")
+          .number("start_sigma", &O::start_sigma, "1", kPositive,
+                  "relative standard deviation of the subject's stiffnesses at the start")
+          .number("learning", &O::learning_s, "s", kNotNegative,
+                  "from so much of the drive's beginning the body is learned where no estimate has it; 0: a body that "
+                  "does not lean, with the I_z of the subject")
+          .file("estimate_file", &O::estimate_file, "`estimate.json` to start from")
+          .was("estimate")
+          .otherwise("the subject's C_f and C_r");
+  return table;
 }
 
 DriveTracker::DriveTracker(const DriveTrackStart& start, const DriveTrackOptions& options, double min_speed_mps,

@@ -20,15 +20,12 @@ namespace veridyn::vehicle {
 
 /// How a vehicle is followed on line. Study table `[track]`: the keys of estimation::TrackerOptions and these.
 struct DriveTrackOptions : estimation::TrackerOptions {
-  double pass_Hz = 2.0;       ///< `pass_band` of the causal filters' delayed rows [Hz]
-  std::string estimate_file;  ///< `estimate_file`: estimate.json to start from; without it the subject's C_f and C_r
-  double start_sigma = 0.3;   ///< `start_sigma`: relative standard deviation of the subject's stiffnesses at the start
-  /// `learning`: from so much of the drive's beginning its body is learned where no estimate has it [s]. 0: a body that
-  /// does not lean, with the I_z of the subject.
-  double learning_s = 60.0;
+  double pass_Hz = 2.0;
+  std::filesystem::path estimate_file;  ///< to start from; without it the subject's C_f and C_r
+  double start_sigma = 0.3;             ///< relative, of the subject's stiffnesses
+  double learning_s = 60.0;             ///< 0: a body that does not lean, with the I_z of the subject
   DriveTrackOptions();
-  /// @throws InputError naming file, line and key.
-  [[nodiscard]] static DriveTrackOptions read(const StudyTable& table);
+  [[nodiscard]] static const KeyTable<DriveTrackOptions>& keys();
 };
 
 /// Their names, in the order of the enum.

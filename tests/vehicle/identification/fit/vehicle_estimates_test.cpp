@@ -20,7 +20,7 @@ TEST(VehicleIdentification, UncertaintyOfTheMassGoesIntoTheErrorBars) {
   VehicleIdentifyOptions options{.output_error = false};
   const VehicleTrajectory drive = lively_drive(p, 1);
   const VehicleIdentification sure = identify(drive, reference_drive_sensors(), 1, options);
-  options.mass_sigma = 75.0;
+  options.given.mass = 75.0;
   const VehicleIdentification unsure = identify(drive, reference_drive_sensors(), 1, options);
   const auto* a = sure.find(VehicleMethod::kGtls)->find("C_f");
   const auto* b = unsure.find(VehicleMethod::kGtls)->find("C_f");

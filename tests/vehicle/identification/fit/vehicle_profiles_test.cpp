@@ -7,6 +7,7 @@
 
 #include "tests/vehicle/simulated_drive.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -91,7 +92,8 @@ TEST(VehicleProfiles, AreOpenWhereADriveExcludesNothing) {
 
 TEST(VehicleProfiles, AreReadWithTheStudy) {
   const auto read = [](const std::string& text) {
-    return VehicleIdentifyOptions::read(Study::parse("[identify]\n" + text, "study.toml").root().table("identify"));
+    return VehicleIdentifyOptions::keys().read(
+        Study::parse("[identify]\n" + text, "study.toml").root().table("identify"));
   };
   EXPECT_THAT(read("profiles = [\"C_f\"]").profiles, ::testing::ElementsAre("C_f"));
   EXPECT_EQ(read("profiles = true").profiles.size(), 6u);

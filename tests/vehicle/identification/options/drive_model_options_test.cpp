@@ -11,6 +11,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/vehicle/simulated_drive.hpp"
 #include "veridyn/core/study.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -22,7 +23,7 @@ using ::testing::StartsWith;
 DriveModelOptions read_options(const std::string& keys) {
   const Study study = Study::parse("[identify]\n" + keys, "study.toml");
   DriveModelOptions options;
-  options.read_keys(study.root().table("identify"));
+  DriveModelOptions::keys().read(study.root().table("identify"), options);
   return options;
 }
 

@@ -6,13 +6,14 @@
 #include <string>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::vehicle {
 namespace {
 
 DriveOpenLoopOptions read(const std::string& keys) {
   const Study study = Study::parse("[validate]\n" + keys, "s.toml");
-  return DriveOpenLoopOptions::read(study.root().table("validate"));
+  return DriveOpenLoopOptions::keys().read(study.root().table("validate"));
 }
 
 TEST(DriveOpenLoopOptions, AreTheKeysThatAircraftHave) {

@@ -4,6 +4,7 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/study.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/vehicle/identification/vehicle_identification.hpp"
 
 namespace veridyn::vehicle {
@@ -13,7 +14,7 @@ TEST(VehicleIdentifyOptions, RefuseWhatMakesNoSense) {
   const auto message = [](const char* toml) -> std::string {
     try {
       const Study study = Study::parse(toml, "study.toml");
-      static_cast<void>(VehicleIdentifyOptions::read(study.root().table("identify")));
+      static_cast<void>(VehicleIdentifyOptions::keys().read(study.root().table("identify")));
     } catch (const InputError& e) {
       return e.what();
     }
@@ -32,7 +33,7 @@ TEST(VehicleIdentifyOptions, RefuseWhatMakesNoSense) {
 TEST(VehicleIdentifyOptions, TakeEffectsByNameNoneOrThoseThatTheDriveTells) {
   const auto read = [](const char* toml) {
     const Study study = Study::parse(toml, "study.toml");
-    return VehicleIdentifyOptions::read(study.root().table("identify"));
+    return VehicleIdentifyOptions::keys().read(study.root().table("identify"));
   };
   EXPECT_FALSE(read("[identify]\n").effects.has_value());
   EXPECT_FALSE(read("[identify]\neffects = \"auto\"\n").effects.has_value());

@@ -5,13 +5,14 @@
 #include <string>
 
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/estimation/open_loop/open_loop.hpp"
 
 namespace veridyn::aircraft {
 
 OpenLoopOptions OpenLoopOptions::read(const StudyTable& table) {
   OpenLoopOptions options;
-  const estimation::OpenLoopTimes times = estimation::OpenLoopTimes::read(table);
+  const estimation::OpenLoopTimes times = estimation::OpenLoopTimes::keys().read(table);
   options.duration_s = times.duration_s;
   options.start_s = times.start_s;
   if (table.has("open_loop_offsets")) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -29,7 +30,7 @@ const char* to_string(Axis axis) { return axis == Axis::kLongitudinal ? "longitu
 
 SegmentOptions SegmentOptions::read(const StudyTable& table) {
   SegmentOptions options;
-  options.read_keys(table);
+  recording::SegmentOptions::keys().read(table, options);
   options.min_airspeed_mps = table.number_or("min_airspeed", "m/s", options.min_airspeed_mps);
   if (table.has("min_input")) options.min_input_rad = table.positive("min_input", "rad");
   options.ambient_factor = table.number_or("ambient_factor", "1", options.ambient_factor);

@@ -61,14 +61,14 @@ Eigen::Matrix4d known_covariance(const VehicleProblem& problem, const GeometrySl
                                  const Eigen::Vector4d& value) {
   const VehicleIdentifyOptions& o = problem.options;
   Eigen::Matrix4d P = Eigen::Matrix4d::Zero();
-  if (o.mass_sigma > 0.0) {
+  if (o.given.mass > 0.0) {
     Eigen::Vector4d g = value / problem.start.mass;
     g(3) = 0.0;
-    P += o.mass_sigma * o.mass_sigma * g * g.transpose();
+    P += o.given.mass * o.given.mass * g * g.transpose();
   }
   for (const bool front : {true, false}) {
     const Eigen::Vector4d& g = front ? slopes.a : slopes.b;
-    const double sigma = front ? o.a_sigma : o.b_sigma;
+    const double sigma = front ? o.given.a : o.given.b;
     const Eigen::Vector4d scaled = g.cwiseProduct(value);
     P += sigma * sigma * scaled * scaled.transpose();
   }
@@ -87,8 +87,8 @@ GeometrySlopes geometry_slopes(const VehicleProblem& problem, const AxleEstimate
     if (other == nullptr || !other->usable) return Eigen::Vector4d::Zero();
     return (values_of(*other) - values_of(typical)).cwiseQuotient(values_of(typical)) / sigma;
   };
-  return {slope(&VehicleParameters<double>::a, problem.options.a_sigma),
-          slope(&VehicleParameters<double>::b, problem.options.b_sigma)};
+  return {slope(&VehicleParameters<double>::a, problem.options.given.a),
+          slope(&VehicleParameters<double>::b, problem.options.given.b)};
 }
 
 /// Covariance of C_f, C_r, I_z, the understeer gradient and, where there is one, the steer offset; mass, a and b taken

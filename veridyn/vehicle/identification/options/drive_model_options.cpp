@@ -11,6 +11,7 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -184,55 +185,85 @@ bool has_unknown(const DriveTyre& tyre, DriveUnknown u) {
       tyre);
 }
 
-void DriveModelOptions::read_keys(const StudyTable& table) {
+namespace {
+
+DriveTyre tyre_named(std::string_view name) {
+  DriveTyre found;
+  AllTyresByNumbers::for_each([&]<typename Tyre>() {
+    if (name == Tyre::kStudyName) found = TyreLaw<Tyre>();
+  });
+  return found;
+}
+
+void read_estimate(const StudyTable& table, const std::string& key, DriveModelOptions& options) {
+  const std::vector<std::string> names(kDriveUnknownNames.begin(), kDriveUnknownNames.end());
+  options.free.fill(false);
+  for (const std::string& name : table.texts(key)) {
+    const auto at = std::find(names.begin(), names.end(), name);
+    if (at == names.end())
+      table.fail(
+          key, fmt::format("'{}' is not an unknown of the drive model{}", name, suggestion(name, names, names.size())));
+    const auto unknown = static_cast<DriveUnknown>(at - names.begin());
+    if (std::ranges::find(kRolls, unknown) != kRolls.end())
+      table.fail(key, fmt::format("names {}, which identify.structure frees or not", name));
+    if (std::ranges::find(kOfCourse, unknown) != kOfCourse.end())
+      table.fail(
+          key, fmt::format("names {}, which is estimated wherever course and heading give the lateral velocity", name));
+    if (std::ranges::find(kOfEffects, unknown) != kOfEffects.end())
+      table.fail(key, fmt::format("names {}, which identify.effects frees or not", name));
+    if (!has_unknown(options.tyre, unknown) &&
+        (unknown == DriveUnknown::kMu || unknown == DriveUnknown::kShape || unknown == DriveUnknown::kCurvature))
+      table.fail(key, fmt::format("names {}, which {} tyres do not have (tyre = \"magic formula\")", name,
+                                  table.text_or("tyre", "linear")));
+    options.free[unknown] = true;
+  }
+}
+
+void read_priors(const StudyTable& priors, DriveModelOptions& options) {
+  for (const DriveUnknown u : kAllDriveUnknowns) {
+    const std::string_view name = kDriveUnknownNames[u];
+    if (!priors.has(name)) continue;
+    const bool none = priors.is_text(name) && priors.text(name) == "none";
+    options.prior[u] = none ? kInfinity : priors.positive(name, kDriveUnknownUnits[u]);
+  }
+}
+
+}  // namespace
+
+const KeyTable<DriveModelOptions>& DriveModelOptions::keys() {
+  using O = DriveModelOptions;
   std::vector<std::string> tyres;
   AllTyresByNumbers::for_each([&]<typename Tyre>() { tyres.emplace_back(Tyre::kStudyName); });
-  const std::string tyre_name = table.choice_or("tyre", tyres, "linear");
-  AllTyresByNumbers::for_each([&]<typename Tyre>() {
-    if (tyre_name == Tyre::kStudyName) tyre = TyreLaw<Tyre>();
-  });
-  const std::vector<std::string> names(kDriveUnknownNames.begin(), kDriveUnknownNames.end());
-  for (const DriveUnknown u : {DriveUnknown::kMu, DriveUnknown::kShape})
-    if (has_unknown(tyre, u)) free[u] = true;
-  if (table.has("estimate")) {
-    free.fill(false);
-    for (const std::string& name : table.texts("estimate")) {
-      const auto at = std::find(names.begin(), names.end(), name);
-      if (at == names.end())
-        table.fail("estimate", fmt::format("'{}' is not an unknown of the drive model{}", name,
-                                           suggestion(name, names, names.size())));
-      const auto unknown = static_cast<DriveUnknown>(at - names.begin());
-      if (std::ranges::find(kRolls, unknown) != kRolls.end())
-        table.fail("estimate", fmt::format("names {}, which identify.structure frees or not", name));
-      if (std::ranges::find(kOfCourse, unknown) != kOfCourse.end())
-        table.fail("estimate", fmt::format("names {}, which is estimated wherever course and heading give the lateral "
-                                           "velocity",
-                                           name));
-      if (std::ranges::find(kOfEffects, unknown) != kOfEffects.end())
-        table.fail("estimate", fmt::format("names {}, which identify.effects frees or not", name));
-      free[unknown] = true;
-    }
-  }
-  for (const DriveUnknown u : {DriveUnknown::kMu, DriveUnknown::kShape, DriveUnknown::kCurvature}) {
-    if (free[u] && !has_unknown(tyre, u))
-      table.fail("estimate", fmt::format("names {}, which {} tyres do not have (tyre = \"magic formula\")",
-                                         kDriveUnknownNames[u], tyre_name));
-  }
-  if (table.has("smoothing")) {
-    smoothing_Hz = table.number("smoothing", "Hz");
-    if (!(smoothing_Hz >= 0.0)) table.fail("smoothing", fmt::format("= {:g} Hz must be >= 0 (0: none)", smoothing_Hz));
-  }
-  const StudyTable starts = table.table_or_empty("start");
-  const StudyTable priors = table.table_or_empty("prior");
-  for (const DriveUnknown u : kAllDriveUnknowns) {
-    const std::string_view name = kDriveUnknownNames[u], unit = kDriveUnknownUnits[u];
-    if (starts.has(name)) start[u] = starts.number(name, unit);
-    if (!priors.has(name)) continue;
-    if (priors.is_text(name) && priors.text(name) == "none")
-      prior[u] = kInfinity;
-    else
-      prior[u] = priors.positive(name, unit);
-  }
+  static const auto table =
+      KeyTable<O>("identify")
+          .other({"tyre", "", internal::quoted(tyres, "`"), "\"linear\"", "law of the tyres"},
+                 [tyres](const StudyTable& t, const std::string& key, O& o) {
+                   o.tyre = tyre_named(t.choice_or(key, tyres, ""));
+                   for (const DriveUnknown u : {DriveUnknown::kMu, DriveUnknown::kShape})
+                     if (has_unknown(o.tyre, u)) o.free[u] = true;
+                 })
+          .other({"estimate", "", "names of unknowns",
+                  "C_f, C_r, I_z, the three biases, and mu and C of tyres that have them",
+                  "what is free beside what structure and effects free; the rest stays at its start", true},
+                 read_estimate)
+          .number("smoothing", &O::smoothing_Hz, "Hz", kNotNegative,
+                  "cut-off of the kernel through which inputs and outputs alike go before they are compared: noise of "
+                  "the steering acts on the lateral acceleration at once, and what it adds to the power of the slip "
+                  "angle is taken off C_f; 0: none")
+          .otherwise("4, or a tenth of the rate, where the steering's noise is above 1e-4 of the steering")
+          .other({"start", "SI", "by the names of unknowns", "by the vehicle's geometry",
+                  "where the search begins; also the mean of the prior", true},
+                 [](const StudyTable& t, const std::string& key, O& o) {
+                   const StudyTable starts = t.table(key);
+                   for (const DriveUnknown u : kAllDriveUnknowns)
+                     o.start[u] = starts.number_or(kDriveUnknownNames[u], kDriveUnknownUnits[u], o.start[u]);
+                 })
+          .other({"prior", "SI", "by the names of unknowns, or `\"none\"`",
+                  "steer_bias 1 deg, yaw_rate_bias 1 deg/s, accel_y_bias 0.5 m/s^2, scales 0.1, sideslip_bias 1 deg, "
+                  "delays 0.1 s, C 0.2, E 0.5; others by the geometry",
+                  "standard deviation of what is known beforehand", true},
+                 [](const StudyTable& t, const std::string& key, O& o) { read_priors(t.table(key), o); });
+  return table;
 }
 
 DriveModelOptions with_geometry(DriveModelOptions options, const VehicleParameters<double>& vehicle,

@@ -124,27 +124,21 @@ inline constexpr DriveTyre kDriveTyre = TyreLaw<Tyre<double>>();
 
 /// Study keys of `[identify]`.
 struct DriveModelOptions {
-  DriveTyre tyre = kDriveTyre<LinearTyre>;  ///< `tyre = "linear"`, "fiala" or "magic formula"
+  DriveTyre tyre = kDriveTyre<LinearTyre>;
   /// What moves; no key of its own: `VehicleIdentifyOptions::structure` chooses. Its unknowns are free.
   DriveStructure structure = DriveStructure::kBicycle;
   /// No key of its own either: `VehicleIdentifyOptions::effects`.
   DriveEffects effects{};
-  /// `estimate = ["C_f", "C_r", ...]`: names of what is free besides the structure's unknowns. Default: C_f, C_r, I_z,
-  /// the three biases, and mu and C of tyres that have them. What is not free stays at its start.
+  /// What is free; the rest stays at its start.
   PerDriveUnknown<bool> free{};
-  /// `[identify.start] mu = 1`: where the search begins; also the mean of the prior. NaN: by the vehicle's geometry,
-  /// see `with_geometry`.
+  /// Where the search begins; also the mean of the prior. NaN: by the vehicle's geometry, see `with_geometry`.
   PerDriveUnknown<double> start{};
-  /// `[identify.prior] steer_bias = "1 deg"`: standard deviation of what is known beforehand; infinite: nothing.
-  /// Defaults: steer_bias 1 deg, yaw_rate_bias 1 deg/s, accel_y_bias 0.5 m/s^2 (at one constant speed the three are
-  /// indistinguishable without), steer_scale and accel_y_scale 0.1, sideslip_bias 1 deg, delays 0.1 s, C 0.2, E 0.5;
-  /// NaN: by the geometry.
+  /// Standard deviation of what is known beforehand; infinite: nothing; NaN: by the geometry. At one constant speed the
+  /// biases of steering, yaw rate and lateral acceleration cannot be told apart without it.
   PerDriveUnknown<double> prior{};
-  /// `smoothing`: cut-off of the kernel through which inputs and outputs alike go before the comparison [Hz]. Noise of
-  /// the steering acts on the lateral acceleration at once (2 C_f/m times it), and what it adds to the slip angle's
-  /// power is taken off C_f: 1.3 % for 0.1 deg of white noise at 100 Hz on 0.9 deg rms of slip. 4 Hz leave a tenth of
-  /// that. 0: none; negative (the default): 4 Hz or a tenth of the rate, where the steering's noise is above 1e-4 of
-  /// the steering.
+  /// Cut-off of the kernel before the comparison [Hz]; 0: none; negative: by the steering's noise, which acts on the
+  /// lateral acceleration at once (2 C_f/m times it): 0.1 deg of white noise at 100 Hz on 0.9 deg rms of slip takes
+  /// 1.3 % off C_f, 4 Hz leave a tenth of that.
   double smoothing_Hz = -1.0;
   /// C_f, C_r and I_z are looked for between their start over this and times it; no key.
   double search_factor = 1e3;
@@ -154,8 +148,8 @@ struct DriveModelOptions {
   double finer_steps = 1.0;  ///< how many times finer the integration steps than output error needs; no key
 
   DriveModelOptions();
-  /// @throws InputError naming file, line and key.
-  void read_keys(const StudyTable& table);
+  /// Of the table `[identify]`.
+  [[nodiscard]] static const KeyTable<DriveModelOptions>& keys();
 };
 
 /// The options with every start and prior a number. What was NaN is that of the vehicle: C_f, C_r, I_z and a its own;

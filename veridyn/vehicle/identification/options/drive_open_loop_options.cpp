@@ -6,24 +6,48 @@
 #include <string>
 
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::vehicle {
 
-DriveOpenLoopOptions DriveOpenLoopOptions::read(const StudyTable& table) {
-  DriveOpenLoopOptions options;
-  options.times = estimation::OpenLoopTimes::read(table);
-  if (!table.has("open_loop_offsets")) return options;
+namespace {
+
+void read_offsets(const StudyTable& table, const std::string& key, DriveOpenLoopOptions& options) {
   std::vector<std::string> names;
   for (const DriveUnknown bias : kDriveBiases) names.emplace_back(kDriveUnknownNames[bias]);
   options.offsets.emplace();
-  for (const std::string& name : table.texts("open_loop_offsets")) {
+  for (const std::string& name : table.texts(key)) {
     const auto found = std::ranges::find(names, name);
     if (found == names.end())
-      table.fail("open_loop_offsets",
+      table.fail(key,
                  fmt::format("'{}' is no bias of steering or sensors{}", name, suggestion(name, names, names.size())));
     options.offsets->push_back(kDriveBiases[found - names.begin()]);
   }
-  return options;
+}
+
+}  // namespace
+
+const KeyTable<DriveOpenLoopOptions>& DriveOpenLoopOptions::keys() {
+  using O = DriveOpenLoopOptions;
+  static const auto table =
+      KeyTable<O>("validate")
+          .with(&O::times, estimation::OpenLoopTimes::keys())
+          .other({"open_loop_offsets", "", "names of biases of steering and sensors",
+                  "those that the estimate does not know of this drive; on another drive that is all",
+                  "have a constant of their own in each window, estimated with the initial state: biases belong to the "
+                  "day",
+                  true},
+                 read_offsets);
+  return table;
+}
+
+const KeyTable<DriveValidateOptions>& DriveValidateOptions::keys() {
+  using O = DriveValidateOptions;
+  static const auto table = KeyTable<O>("validate", "Where and how an estimate is validated.")
+                                .choice("segments", &O::holdout_only, {{"all", false}, {"holdout", true}},
+                                        "where `veridyn validate` takes an estimate of other data")
+                                .with(&O::open_loop, DriveOpenLoopOptions::keys());
+  return table;
 }
 
 }  // namespace veridyn::vehicle

@@ -9,17 +9,24 @@
 
 namespace veridyn::vehicle {
 
-/// What is driven open loop in validation. Keys of the study table `[validate]`.
+/// What is driven open loop in validation. Study table `[validate]`.
 struct DriveOpenLoopOptions {
-  estimation::OpenLoopTimes times = {};  ///< `open_loop`, `open_loop_start`
-  /// `open_loop_offsets`: biases (of steering and sensors) that have a constant of their own in each window, estimated
-  /// with the initial state: biases belong to the day. Where it is not given: all that the estimate does not know of
-  /// this drive; on another drive than its own that is all of them.
+  estimation::OpenLoopTimes times = {};
+  /// Biases that have a constant of their own in each window: they belong to the day. Nothing: all that the estimate
+  /// does not know of this drive.
   std::optional<std::vector<DriveUnknown>> offsets = {};
 
   [[nodiscard]] bool asked() const { return times.duration_s > 0.0; }
-  /// Takes the keys that are there. @throws InputError for values that make no sense.
-  [[nodiscard]] static DriveOpenLoopOptions read(const StudyTable& table);
+  /// Of the table `[validate]`.
+  [[nodiscard]] static const KeyTable<DriveOpenLoopOptions>& keys();
+};
+
+/// How an estimate is validated. Study table `[validate]`.
+struct DriveValidateOptions {
+  bool holdout_only = false;  ///< where an estimate of other data is validated
+  DriveOpenLoopOptions open_loop = {};
+
+  [[nodiscard]] static const KeyTable<DriveValidateOptions>& keys();
 };
 
 /// The biases of steering and sensors.

@@ -3,50 +3,46 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/estimation/uncertainty/profile_choice.hpp"
 
 namespace veridyn::vehicle {
 namespace {
 
+using O = VehicleIdentifyOptions;
+
 /// Nothing for "auto".
-std::optional<DriveEffects> read_effects(const StudyTable& table) {
-  if (!table.has("effects") || (table.is_text("effects") && table.text("effects") == "auto")) return std::nullopt;
-  DriveEffects effects{};
-  for (const std::string& name : table.texts("effects")) {
+void read_effects(const StudyTable& table, const std::string& key, O& options) {
+  if (table.is_text(key) && table.text(key) == "auto") return;
+  options.effects.emplace();
+  for (const std::string& name : table.texts(key)) {
     const auto at = std::ranges::find(kDriveEffectNames, name);
     if (at == kDriveEffectNames.end()) {
       const std::vector<std::string> names(kDriveEffectNames.begin(), kDriveEffectNames.end());
-      table.fail("effects", fmt::format("names '{}', which is none of {}", name, fmt::join(names, ", ")));
+      table.fail(key, fmt::format("names '{}', which is none of {}", name, fmt::join(names, ", ")));
     }
-    effects[static_cast<DriveEffect>(at - kDriveEffectNames.begin())] = true;
+    (*options.effects)[static_cast<DriveEffect>(at - kDriveEffectNames.begin())] = true;
   }
-  return effects;
 }
 
-}  // namespace
+const KeyTable<GivenVehicleSigma>& given_sigma_keys() {
+  using S = GivenVehicleSigma;
+  static const auto table =
+      KeyTable<S>(
+          "uncertainty",
+          "How well what is taken as known is known, as standard deviations. Motion alone shows only the ratios "
+          "C_f/m, C_r/m and I_z/m; what else the error bars hold comes from here.")
+          .number("mass", &S::mass, "kg", kNotNegative, "of the whole vehicle")
+          .number("a", &S::a, "m", kNotNegative, "of the distance to the front axle")
+          .number("b", &S::b, "m", kNotNegative, "of the distance to the rear axle");
+  return table;
+}
 
-VehicleIdentifyOptions VehicleIdentifyOptions::read(const StudyTable& table) {
-  VehicleIdentifyOptions o;
-  o.equation_error = table.flag_or("equation_error", o.equation_error);
-  o.output_error = table.flag_or("output_error", o.output_error);
+/// What structure, effects and profiles make of the model, after all keys.
+void complete(const StudyTable& table, O& o) {
   if (!o.equation_error && !o.output_error)
     table.fail("output_error", "and equation_error are both false: nothing is left to identify by");
-  std::vector<std::string> methods{"auto"};
-  for (const VehicleMethod m : {VehicleMethod::kOutputError, VehicleMethod::kOls, VehicleMethod::kTls,
-                                VehicleMethod::kGtls, VehicleMethod::kPcaGtls})
-    methods.emplace_back(to_string(m));
-  const std::string method = table.choice_or("method", methods, "auto");
-  if (method != "auto") o.method = vehicle_method(method);
-  o.model.read_keys(table);
-  std::vector<std::string> structures{"auto"};
-  structures.insert(structures.end(), kDriveStructureNames.begin(), kDriveStructureNames.end());
-  const std::string structure = table.choice_or("structure", structures, "auto");
-  const auto at = std::ranges::find(kDriveStructureNames, structure);
-  if (at != kDriveStructureNames.end()) {
-    o.structure = static_cast<DriveStructure>(at - kDriveStructureNames.begin());
-    o.model = with_structure(o.model, *o.structure);
-  }
-  o.effects = read_effects(table);
+  if (o.structure) o.model = with_structure(o.model, *o.structure);
   if (o.effects) o.model = with_effects(o.model, *o.effects);
   std::vector<std::string> free;
   for (std::size_t i = 0; i < kDriveUnknowns; ++i)
@@ -54,26 +50,51 @@ VehicleIdentifyOptions VehicleIdentifyOptions::read(const StudyTable& table) {
   o.profiles = estimation::read_profiles(table, free);
   if (!o.profiles.empty() && !o.output_error)
     table.fail("profiles", "are of the output error, which output_error = false leaves out");
-  o.signal_to_noise = table.number_or("signal_to_noise", "1", o.signal_to_noise);
-  if (!(o.signal_to_noise >= 1.0 && o.signal_to_noise <= 10.0))
-    table.fail("signal_to_noise", fmt::format("= {} must be from 1 to 10", o.signal_to_noise));
-  o.significance = table.number_or("significance", "1", o.significance);
-  if (!(o.significance > 0.0 && o.significance < 1.0))
-    table.fail("significance", fmt::format("= {} must be between 0 and 1", o.significance));
-  o.min_holdout_r2 = table.number_or("min_holdout_r2", "1", o.min_holdout_r2);
-  o.max_unmodelled = table.number_or("max_unmodelled", "1", o.max_unmodelled);
-  o.contradiction_level = table.number_or("contradiction_level", "1", o.contradiction_level);
-  o.max_relative_sigma = table.positive_or("max_relative_sigma", "1", o.max_relative_sigma);
-  const StudyTable known = table.table_or_empty("uncertainty");
-  const auto sigma = [&](const char* key, const char* unit) {
-    const double s = known.number_or(key, unit, 0.0);
-    if (!(s >= 0.0)) known.fail(key, fmt::format("= {:g} must be >= 0: it is a standard deviation", s));
-    return s;
-  };
-  o.mass_sigma = sigma("mass", "kg");
-  o.a_sigma = sigma("a", "m");
-  o.b_sigma = sigma("b", "m");
-  return o;
+}
+
+}  // namespace
+
+const KeyTable<VehicleIdentifyOptions>& VehicleIdentifyOptions::keys() {
+  static const auto table =
+      KeyTable<O>("identify", "How the vehicle is identified, and what is demanded of the result.")
+          .flag("equation_error", &O::equation_error, "regressions of the equations of motion")
+          .flag("output_error", &O::output_error, "maximum likelihood of the simulated outputs")
+          .choice("method", &O::method,
+                  {{"auto", {}},
+                   {"output error", VehicleMethod::kOutputError},
+                   {"OLS", VehicleMethod::kOls},
+                   {"TLS", VehicleMethod::kTls},
+                   {"GTLS", VehicleMethod::kGtls},
+                   {"PCA-GTLS", VehicleMethod::kPcaGtls}},
+                  "whose parameters count; `auto`: output error where it converged, else the regression that the "
+                  "comparison recommends")
+          .choice("structure", &O::structure, choices_of(kDriveStructureNames, {{"auto", std::nullopt}}),
+                  "what moves and how tyres give; `auto`: the richest that the drive determines and asks for")
+          .other(
+              {"effects", "",
+               "`\"auto\"`, or a list of " +
+                   internal::quoted({kDriveEffectNames.begin(), kDriveEffectNames.end()}, "`"),
+               "\"auto\"",
+               "what road, air and pedals add; `auto`: what the drive tells and asks for, nothing beside a structure "
+               "that is given"},
+              read_effects)
+          .with(&O::model, DriveModelOptions::keys())
+          .other({"profiles", "", "`true`, or a list of unknowns", "false",
+                  "unknowns whose profile likelihood is followed, by output error; `true`: all that are estimated"},
+                 [](const StudyTable&, const std::string&, O&) {})
+          .number("signal_to_noise", &O::signal_to_noise, "1", from_to(1.0, 10.0), "S/n of the excitation threshold")
+          .number("significance", &O::significance, "1", between(0.0, 1.0), "level of the t-tests")
+          .number("min_holdout_r2", &O::min_holdout_r2, "1", kAnyNumber,
+                  "of the predicted yaw rate; below it everything is rejected")
+          .number("max_unmodelled", &O::max_unmodelled, "1", kAnyNumber,
+                  "largest share of an output's power that may be left as autocorrelated residual")
+          .number("contradiction_level", &O::contradiction_level, "1", kAnyNumber,
+                  "p below which methods or parts of the data contradict each other")
+          .number("max_relative_sigma", &O::max_relative_sigma, "1", kPositive,
+                  "a stiffness or inertia whose standard error is a larger share of it is not excited")
+          .table("uncertainty", &O::given, given_sigma_keys())
+          .check(complete);
+  return table;
 }
 
 }  // namespace veridyn::vehicle

@@ -12,41 +12,33 @@
 
 namespace veridyn::vehicle {
 
-/// What identification may do and what it demands of its result. Study table `[identify]`; every key is optional.
-struct VehicleIdentifyOptions {
-  bool equation_error = true;  ///< `equation_error`
-  bool output_error = true;    ///< `output_error`
-  /// `structure`: "auto" (nothing) takes the richest that the data ask for, see `structure_ladder.hpp`; a name of
-  /// kDriveStructureNames fixes it.
-  std::optional<DriveStructure> structure = {};
-  /// `effects`: "auto" (nothing) adds what road, air and pedals do to the structure, where the drive tells
-  /// (`drive_effects.hpp`) and asks for it; a list of kDriveEffectNames, or [], fixes them. With a fixed structure
-  /// "auto" is [].
-  std::optional<DriveEffects> effects = {};
-  /// `method`: "auto" (nothing) takes output error where it converged, else the equation error that its comparison
-  /// recommends; "output error", "OLS", "TLS", "GTLS", "PCA-GTLS" fixes it.
-  std::optional<VehicleMethod> method = {};
-  DriveModelOptions model = {};  ///< `tyre`, `estimate`, `[identify.prior]`, ...: see DriveModelOptions
-  double signal_to_noise = 1.0;  ///< `signal_to_noise`: S/n of the excitation threshold, 1 to 10
-  double significance = 0.05;    ///< `significance`: level of the t-tests
-  double min_holdout_r2 =
-      estimation::kHoldOutFailed;  ///< `min_holdout_r2`: of the predicted yaw rate; below it everything is rejected
-  /// `max_unmodelled`: largest share of an output's power that may be left as autocorrelated residual.
-  double max_unmodelled = estimation::kMostUnmodelled;
-  double contradiction_level =
-      estimation::kPartsContradict;  ///< `contradiction_level`: p below which methods or data parts contradict
-  /// `max_relative_sigma`: a stiffness or inertia whose standard error is a larger share of it counts as not excited.
-  double max_relative_sigma = 0.25;
-  /// `[identify.uncertainty]`: standard deviations of what is taken as known: `mass` [kg], `a`, `b` [m]. Motion alone
-  /// shows only ratios to the mass: C_f/m, C_r/m and I_z/m; the rest of the error bars comes from here.
-  double mass_sigma = 0.0;
-  double a_sigma = 0.0;
-  double b_sigma = 0.0;
-  /// `profiles`: free unknowns whose profile likelihood is followed by output error; `true`: all of them.
-  std::vector<std::string> profiles = {};
+/// How well mass and geometry, which are taken as known, are known: standard deviations. Study table
+/// `[identify.uncertainty]`.
+struct GivenVehicleSigma {
+  double mass = 0.0;  ///< [kg]
+  double a = 0.0;     ///< [m]
+  double b = 0.0;     ///< [m]
+};
 
-  /// @throws InputError for values that make no sense.
-  [[nodiscard]] static VehicleIdentifyOptions read(const StudyTable& table);
+/// What identification may do and what it demands of its result. Study table `[identify]`, with the keys of
+/// DriveModelOptions.
+struct VehicleIdentifyOptions {
+  bool equation_error = true;
+  bool output_error = true;
+  std::optional<DriveStructure> structure = {};  ///< nothing: the richest that the data determine
+  std::optional<DriveEffects> effects = {};      ///< nothing: those that the drive shows
+  std::optional<VehicleMethod> method = {};      ///< nothing: output error where it converged
+  DriveModelOptions model = {};
+  double signal_to_noise = 1.0;
+  double significance = 0.05;
+  double min_holdout_r2 = estimation::kHoldOutFailed;
+  double max_unmodelled = estimation::kMostUnmodelled;
+  double contradiction_level = estimation::kPartsContradict;
+  double max_relative_sigma = 0.25;
+  GivenVehicleSigma given = {};
+  std::vector<std::string> profiles = {};  ///< free unknowns whose profile likelihood is followed
+
+  [[nodiscard]] static const KeyTable<VehicleIdentifyOptions>& keys();
 };
 
 }  // namespace veridyn::vehicle

@@ -7,6 +7,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -147,20 +148,29 @@ std::string account(const DriveSegments& s, const DriveSegmentOptions& o) {
 
 DriveSegmentOptions::DriveSegmentOptions() { window_s = 2.0; }
 
-DriveSegmentOptions DriveSegmentOptions::read(const StudyTable& table) {
-  DriveSegmentOptions o;
-  o.read_keys(table);
-  o.min_speed_mps = table.positive_or("min_speed", "m/s", o.min_speed_mps);
-  o.max_steer_rad = table.positive_or("max_steer", "rad", o.max_steer_rad);
-  if (!(o.max_steer_rad < 90.0 * kDegree))
-    table.fail("max_steer", fmt::format("= {:g} deg must be less than 90 deg", o.max_steer_rad / kDegree));
-  if (table.has("min_lateral_acceleration")) o.min_lateral_mps2 = table.positive("min_lateral_acceleration", "m/s^2");
-  if (!(o.block_s >= o.min_duration_s))
-    table.fail("block",
-               fmt::format("= {:g} s must not be shorter than min_duration = {:g} s", o.block_s, o.min_duration_s));
-  o.identification_spans = recording::read_spans(table, "identification");
-  o.holdout_spans = recording::read_spans(table, "holdout_spans");
-  return o;
+const KeyTable<DriveSegmentOptions>& DriveSegmentOptions::keys() {
+  using O = DriveSegmentOptions;
+  const auto spans = [](auto field) {
+    return [field](const StudyTable& table, const std::string& key, O& o) {
+      o.*field = recording::read_spans(table, key);
+    };
+  };
+  static const auto table =
+      KeyTable<O>("segments", "Which stretches of a drive are used, and what for.")
+          .with(recording::SegmentOptions::keys())
+          .number("min_speed", &O::min_speed_mps, "m/s", kPositive, "slip angles mean nothing below it")
+          .number("max_steer", &O::max_steer_rad, "rad", between(0.0, kPi / 2), "beyond it the drive is not used")
+          .number("min_lateral_acceleration", &O::min_lateral_mps2, "m/s^2", kPositive,
+                  "rms of yaw rate times speed over `window` from which a stretch counts as excited")
+          .otherwise("0.3, or where a drive is gentler half of what its liveliest twentieth exceeds, down to 0.05")
+          .other(recording::spans_key("identification", "stretches to identify from"), spans(&O::identification_spans))
+          .other(recording::spans_key("holdout_spans", "stretches to validate on"), spans(&O::holdout_spans))
+          .check([](const StudyTable& t, O& o) {
+            if (!(o.block_s >= o.min_duration_s))
+              t.fail("block", fmt::format("= {:g} s must not be shorter than min_duration = {:g} s", o.block_s,
+                                          o.min_duration_s));
+          });
+  return table;
 }
 
 DriveSegments find_drive_segments(const DriveSignals& signals, const DriveSegmentOptions& o,

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/recording.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/recording/segments.hpp"
@@ -12,20 +13,17 @@
 
 namespace veridyn::vehicle {
 
-/// Which stretches of a drive are used: keys of recording::SegmentOptions (`window`: 2 s by default, the
-/// rms of r u is taken over it) and these. Study table `[segments]`; every key is optional.
+/// Which stretches of a drive are used; the window is 2 s by default, and the rms of r u is taken over it.
+/// Study table `[segments]`.
 struct DriveSegmentOptions : recording::SegmentOptions {
-  double min_speed_mps = 3.0;     ///< `min_speed`: slip angles mean nothing below it
-  double max_steer_rad = 1.0472;  ///< `max_steer` (60 deg): beyond it the drive is not used
-  /// `min_lateral_acceleration`: rms of r u over `window` from which a stretch counts as excited. Nothing: 0.3 m/s^2,
-  /// or where a drive is gentler half of what its liveliest twentieth exceeds, down to 0.05 m/s^2.
-  std::optional<double> min_lateral_mps2 = {};
-  std::vector<TimeSpan> identification_spans;  ///< `identification = [10, 60, 80, 95]`: begin and end of each, as given
-  std::vector<TimeSpan> holdout_spans;         ///< `holdout_spans`
+  double min_speed_mps = 3.0;
+  double max_steer_rad = 60.0 * kDegree;
+  std::optional<double> min_lateral_mps2 = {};  ///< rms of r u over the window; nothing: by the drive
+  std::vector<TimeSpan> identification_spans;   ///< as given
+  std::vector<TimeSpan> holdout_spans;
 
   DriveSegmentOptions();
-  /// @throws InputError for values that make no sense.
-  [[nodiscard]] static DriveSegmentOptions read(const StudyTable& table);
+  [[nodiscard]] static const KeyTable<DriveSegmentOptions>& keys();
 };
 
 /// Stretches of a drive and how they are used.

@@ -8,6 +8,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/numerics/statistics.hpp"
 #include "veridyn/vehicle/identification/signals/course_lateral_velocity.hpp"
 
@@ -180,29 +181,39 @@ GridSignal heading(const Channel& yaw, const numerics::UniformGrid& grid, const 
 
 }  // namespace
 
-DriveSignalOptions DriveSignalOptions::read(const StudyTable& table) {
-  DriveSignalOptions o;
-  o.rate_Hz = table.has("rate") ? table.positive("rate", "Hz") : 0.0;
-  o.pass_Hz = table.has("pass_band") ? table.positive("pass_band", "Hz") : 0.0;
-  o.steering_ratio = table.has("steering_ratio") ? table.positive("steering_ratio", "1") : 0.0;
-  o.rolling_radius = table.has("rolling_radius") ? table.positive("rolling_radius", "m") : 0.0;
-  if (table.has("accel_position")) {
-    const std::vector<double> p = table.numbers("accel_position", "m");
-    if (p.size() != 3) table.fail("accel_position", fmt::format("has {} numbers; must have 3: x, y, z", p.size()));
-    std::copy(p.begin(), p.end(), o.accel_position.begin());
-  }
-  o.velocity_position = table.number_or("velocity_position", "m", 0.0);
-  o.roll_gradient = table.number_or("roll_gradient", "rad/(m/s^2)", 0.0);
-  if (!(o.roll_gradient >= 0.0 && o.roll_gradient < 0.1)) {
-    table.fail("roll_gradient",
-               fmt::format("= {:g} must be from 0 to 0.1 rad/(m/s^2) (5 deg per g is 0.0089)", o.roll_gradient));
-  }
-  o.gravity = table.positive_or("gravity", "m/s^2", o.gravity);
-  std::vector<recording::StandardChannel> channels;
-  for (std::size_t i = 0; i < kDriveSignals; ++i)
-    channels.push_back({std::string(kDriveSignalNames[i]), std::string(kDriveSignalUnits[i])});
-  o.noise = recording::read_noise(table.table_or_empty("noise"), channels);
-  return o;
+const KeyTable<DriveSignalOptions>& DriveSignalOptions::keys() {
+  using O = DriveSignalOptions;
+  static const auto table =
+      KeyTable<O>("signals", "How recorded channels become signals on one grid.")
+          .number("rate", &O::rate_Hz, "Hz", kPositive, "of the common grid")
+          .otherwise("that of the yaw rate, at most 100")
+          .number("pass_band", &O::pass_Hz, "Hz", kPositive,
+                  "of the equation-error regressions, which differentiate; output error takes the unfiltered signals")
+          .otherwise("2, or a tenth of the rate where that is less")
+          .number("steering_ratio", &O::steering_ratio, "1", kPositive,
+                  "hand wheel over road wheels; needed where the log has `steering_wheel`")
+          .otherwise("none")
+          .number("rolling_radius", &O::rolling_radius, "m", kPositive,
+                  "gives the speed by the rear wheels where the log has no `speed`")
+          .otherwise("none")
+          .numbers("accel_position", &O::accel_position, "m", kAnyNumber,
+                   "of the accelerometer from the centre of gravity: forward, left, up")
+          .number("velocity_position", &O::velocity_position, "m", kAnyNumber,
+                  "how far ahead of the centre of gravity `lateral_velocity`, `sideslip` and `course` are measured")
+          .number("roll_gradient", &O::roll_gradient, "rad/(m/s^2)", {.low = 0.0, .high = 0.1, .with_high = false},
+                  "how far the body leans outward per lateral acceleration, 0.0089 for 5 deg per g: a sensor fixed to "
+                  "the body then shows (1 + g roll_gradient) times the lateral acceleration, and that is taken off. "
+                  "Ignored where `roll` is recorded, of which g sin(roll) is taken off")
+          .number("gravity", &O::gravity, "m/s^2", kPositive, "")
+          .other({"noise", "SI", "by the standard names of channels", "measured above 0.2 of the channel's rate",
+                  "standard deviation of a channel's white noise per sample", true},
+                 [](const StudyTable& t, const std::string& key, O& o) {
+                   std::vector<recording::StandardChannel> channels;
+                   for (std::size_t i = 0; i < kDriveSignals; ++i)
+                     channels.push_back({std::string(kDriveSignalNames[i]), std::string(kDriveSignalUnits[i])});
+                   o.noise = recording::read_noise(t.table(key), channels);
+                 });
+  return table;
 }
 
 DriveSignals prepare_drive_signals(const recording::MappedRecording& mapped, const DriveSignalOptions& options,

@@ -37,31 +37,19 @@ inline constexpr EnumArray<DriveSignal, std::string_view, kDriveSignals> kDriveS
 inline constexpr EnumArray<DriveSignal, std::string_view, kDriveSignals> kDriveSignalUnits{
     "rad", "m/s", "rad/s", "m/s^2", "m/s^2", "m/s", "m", "m", "rad", "rad", "rad/s"};
 
-/// How recorded channels become signals. Study table `[signals]`; every key is optional.
+/// How recorded channels become signals. Study table `[signals]`.
 struct DriveSignalOptions {
-  double rate_Hz = 0.0;  ///< `rate`: of the common grid; 0 takes that of the yaw rate, at most 100 Hz
-  /// `pass_band`: of the equation-error regressions, which differentiate [Hz]; 0 takes 2 Hz, or a tenth of the rate
-  /// where that is less. Output error works on the unfiltered signals.
-  double pass_Hz = 0.0;
-  double steering_ratio = 0.0;  ///< `steering_ratio`: hand wheel over road wheels; needed with `steering_wheel`
-  double rolling_radius = 0.0;  ///< `rolling_radius` [m]: speed from the rear wheels where there is no `speed`
-  /// `accel_position = [x, y, z]`: of the accelerometer from the centre of gravity, forward, left, up [m].
-  std::array<double, 3> accel_position{};
-  /// `velocity_position`: how far ahead of the centre of gravity `lateral_velocity`, `sideslip` and `course` are
-  /// measured [m].
-  double velocity_position = 0.0;
-  /// `roll_gradient` [rad/(m/s^2)]: how far the body leans outward per lateral acceleration. A sensor fixed to the
-  /// body then shows (1 + g roll_gradient) a_y; 5 deg per g (0.0089) make 8.7 % of it, which would all be read as
-  /// softer or stiffer tyres. Taken off; 0: not known. Ignored where `roll` is recorded, of which g sin(roll) is taken
-  /// off.
-  double roll_gradient = 0.0;
-  /// `[signals.noise]`: standard deviation of a channel's white noise per sample by standard name; what is not given is
-  /// measured from the channel's content above 0.2 of its rate.
-  recording::GivenNoise noise = {};
-  double gravity = kGravity;  ///< [m/s^2]
+  double rate_Hz = 0.0;                    ///< of the common grid; 0: by the yaw rate
+  double pass_Hz = 0.0;                    ///< of regressions, which differentiate; 0: by the rate
+  double steering_ratio = 0.0;             ///< hand wheel over road wheels; 0: not known
+  double rolling_radius = 0.0;             ///< [m]; 0: not known
+  std::array<double, 3> accel_position{};  ///< from the centre of gravity: forward, left, up [m]
+  double velocity_position = 0.0;          ///< ahead of the centre of gravity [m]
+  double roll_gradient = 0.0;              ///< [rad/(m/s^2)]; 0: not known
+  recording::GivenNoise noise = {};        ///< what is not given is measured
+  double gravity = kGravity;               ///< [m/s^2]
 
-  /// @throws InputError naming file, line and key.
-  [[nodiscard]] static DriveSignalOptions read(const StudyTable& table);
+  [[nodiscard]] static const KeyTable<DriveSignalOptions>& keys();
 };
 
 using recording::GridSignal;

@@ -1,0 +1,110 @@
+#include "veridyn/core/study_keys.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/units.hpp"
+
+namespace veridyn {
+
+std::string KeyRange::text() const {
+  const bool bounded_low = std::isfinite(low), bounded_high = std::isfinite(high);
+  if (!bounded_low && !bounded_high) return {};
+  if (!bounded_high) return fmt::format("{} {:.9g}", with_low ? ">=" : ">", low);
+  if (!bounded_low) return fmt::format("{} {:.9g}", with_high ? "<=" : "<", high);
+  if (with_low && with_high) return fmt::format("from {:.9g} to {:.9g}", low, high);
+  if (!with_low && !with_high) return fmt::format("between {:.9g} and {:.9g}", low, high);
+  return with_high ? fmt::format("above {:.9g} and at most {:.9g}", low, high)
+                   : fmt::format("at least {:.9g} and below {:.9g}", low, high);
+}
+
+std::string in_markdown(const StudyKeys& table) {
+  std::string text =
+      fmt::format("| `[{}]` | unit | default | values | meaning |\n| --- | --- | --- | --- | --- |\n", table.table);
+  for (const StudyKey& key : table.keys)
+    text += fmt::format("| `{}` | {} | {} | {} | {} |\n", key.name, key.unit == "1" ? "" : key.unit,
+                        key.in_words || key.otherwise.empty() ? key.otherwise : fmt::format("`{}`", key.otherwise),
+                        key.range, key.says);
+  return table.about.empty() ? text : fmt::format("{}\n\n{}", table.about, text);
+}
+
+std::string commented_line(const StudyKey& key) {
+  const std::string left =
+      fmt::format("# {} = {}", key.name, key.otherwise.empty() || key.in_words ? "..." : key.otherwise);
+  std::string right = key.says;
+  if (key.in_words) right += fmt::format("; default: {}", key.otherwise);
+  return fmt::format("{:<34} # {}\n", left, right);
+}
+
+namespace internal {
+namespace {
+
+/// An angle, or a rate of one, in degrees where that is the rounder number.
+bool rounder_in_degrees(double si, const Unit& degrees) {
+  const double number = degrees.from_si(si);
+  const auto round = [](double x) { return std::abs(x * 100.0 - std::round(x * 100.0)) < 1e-6; };
+  return si != 0.0 && !round(si) && round(number);
+}
+
+void check(const StudyTable& table, const std::string& name, const std::string& unit, const KeyRange& range,
+           double value) {
+  if (range.contains(value)) return;
+  const std::string with_unit = unit.empty() || unit == "1" || range.low == 0.0 ? std::string() : " " + unit;
+  table.fail(name, fmt::format("= {:g} must be {}{}", value, range.text(), with_unit));
+}
+
+}  // namespace
+
+std::string shown(double si, std::string_view unit) {
+  if (!std::isfinite(si)) return {};
+  if (unit.empty() || unit == "1") return fmt::format("{:.6g}", si);
+  for (const auto& [radians, degrees] : {std::pair{"rad", "deg"}, std::pair{"rad/s", "deg/s"}})
+    if (unit == radians && rounder_in_degrees(si, parse_unit(degrees)))
+      return fmt::format("\"{:.6g} {}\"", parse_unit(degrees).from_si(si), degrees);
+  return fmt::format("\"{:.6g} {}\"", si, unit);
+}
+
+std::string shown(const std::vector<double>& si, std::string_view unit) {
+  std::vector<std::string> texts;
+  for (const double x : si) texts.push_back(x == 0.0 ? "0" : shown(x, unit));
+  return fmt::format("[{}]", fmt::join(texts, ", "));
+}
+
+std::string quoted(const std::vector<std::string>& texts, std::string_view mark) {
+  std::string all;
+  for (const std::string& text : texts) all += fmt::format("{}{}\"{}\"{}", all.empty() ? "" : ", ", mark, text, mark);
+  return all;
+}
+
+double number_in(const StudyTable& table, const std::string& name, const std::string& unit, const KeyRange& range) {
+  const double value = table.number(name, unit);
+  check(table, name, unit, range, value);
+  return value;
+}
+
+std::vector<double> numbers_in(const StudyTable& table, const std::string& name, const std::string& unit,
+                               const KeyRange& range, std::size_t size) {
+  std::vector<double> values = table.numbers(name, unit);
+  if (size != 0 && values.size() != size)
+    table.fail(name, fmt::format("has {} numbers, needs {}", values.size(), size));
+  for (const double value : values) check(table, name, unit, range, value);
+  return values;
+}
+
+long long integer_in(const StudyTable& table, const std::string& name, long long least, long long most) {
+  const long long value = table.integer(name);
+  if (value < least || value > most) table.fail(name, fmt::format("= {} must be from {} to {}", value, least, most));
+  return value;
+}
+
+void refuse_missing(const StudyTable& table, const std::vector<std::string>& keys) {
+  if (keys.empty()) return;
+  if (keys.size() == 1) table.fail(keys.front(), "is missing");
+  throw InputError(table.place(""), fmt::format("{} are missing", fmt::join(keys, ", ")));
+}
+
+}  // namespace internal
+}  // namespace veridyn
