@@ -72,7 +72,7 @@ TEST(RealDrives, HunterIsDrivenOpenLoopOverWholeRuns) {
   if (!data_is_there()) GTEST_SKIP() << "the shared data are not here";
   Progress silent;
   VehicleStudy drive = read_study(Study::load(study_file("hunter_se.toml")), silent);
-  drive.open_loop.times.duration_s = 600.0;
+  drive.validation.open_loop.times.duration_s = 600.0;
   drive.validation.holdout_only = true;
   estimation::Estimate estimate;
   estimate.covariance = Eigen::MatrixXd::Zero(3, 3);

@@ -39,6 +39,12 @@ std::string commented_line(const StudyKey& key) {
   return fmt::format("{:<34} # {}\n", left, right);
 }
 
+std::string quoted_list(const std::vector<std::string>& texts, std::string_view mark) {
+  std::string all;
+  for (const std::string& text : texts) all += fmt::format("{}{}\"{}\"{}", all.empty() ? "" : ", ", mark, text, mark);
+  return all;
+}
+
 namespace internal {
 namespace {
 
@@ -71,12 +77,6 @@ std::string shown(const std::vector<double>& si, std::string_view unit) {
   std::vector<std::string> texts;
   for (const double x : si) texts.push_back(x == 0.0 ? "0" : shown(x, unit));
   return fmt::format("[{}]", fmt::join(texts, ", "));
-}
-
-std::string quoted(const std::vector<std::string>& texts, std::string_view mark) {
-  std::string all;
-  for (const std::string& text : texts) all += fmt::format("{}{}\"{}\"{}", all.empty() ? "" : ", ", mark, text, mark);
-  return all;
 }
 
 double number_in(const StudyTable& table, const std::string& name, const std::string& unit, const KeyRange& range) {

@@ -64,12 +64,13 @@ struct StudyKeys {
 /// `# name = default   # what it is for`, as a study to start from has it.
 [[nodiscard]] std::string commented_line(const StudyKey& key);
 
+/// `"a", "b"`, each with `mark` around it.
+[[nodiscard]] std::string quoted_list(const std::vector<std::string>& texts, std::string_view mark = {});
+
 namespace internal {
 
 [[nodiscard]] std::string shown(double si, std::string_view unit);
 [[nodiscard]] std::string shown(const std::vector<double>& si, std::string_view unit);
-/// `"a", "b"`, each with `mark` around it.
-[[nodiscard]] std::string quoted(const std::vector<std::string>& texts, std::string_view mark = {});
 /// @throws InputError outside `range`
 [[nodiscard]] double number_in(const StudyTable& table, const std::string& name, const std::string& unit,
                                const KeyRange& range);
@@ -175,7 +176,7 @@ class KeyTable {
         {std::move(name), {}, {}, {}, std::move(says)},
         [field](T& object) {
           const std::string now = std::invoke(field, object);
-          return now.empty() ? now : internal::quoted({now});
+          return now.empty() ? now : quoted_list({now});
         },
         [field](const StudyTable& table, const std::string& key, T& object) {
           std::invoke(field, object) = table.text(key);
@@ -187,7 +188,7 @@ class KeyTable {
   KeyTable& texts(std::string name, Field field, std::string says) {
     return add(
         {std::move(name), {}, {}, {}, std::move(says)},
-        [field](T& object) { return '[' + internal::quoted(std::invoke(field, object)) + ']'; },
+        [field](T& object) { return '[' + quoted_list(std::invoke(field, object)) + ']'; },
         [field](const StudyTable& table, const std::string& key, T& object) {
           std::invoke(field, object) = table.texts(key);
         });
@@ -210,10 +211,10 @@ class KeyTable {
     std::vector<std::string> names;
     for (const auto& [text, value] : values) names.push_back(text);
     return add(
-        {std::move(name), {}, internal::quoted(names, "`"), {}, std::move(says)},
+        {std::move(name), {}, quoted_list(names, "`"), {}, std::move(says)},
         [field, values](T& object) {
           for (const auto& [text, value] : values)
-            if (value == std::invoke(field, object)) return internal::quoted({text});
+            if (value == std::invoke(field, object)) return quoted_list({text});
           return std::string();
         },
         [field, names, values](const StudyTable& table, const std::string& key, T& object) {

@@ -7,13 +7,14 @@
 #include <string>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::estimation {
 namespace {
 
 OpenLoopTimes read(const std::string& keys) {
   const Study study = Study::parse("[validate]\n" + keys, "s.toml");
-  return OpenLoopTimes::read(study.root().table("validate"));
+  return OpenLoopTimes::keys().read(study.root().table("validate"));
 }
 
 TEST(OpenLoopTimes, HaveUnitsAndMakeSense) {

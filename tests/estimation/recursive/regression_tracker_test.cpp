@@ -10,6 +10,7 @@
 
 #include "tests/support/refusal.hpp"
 #include "veridyn/core/study.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::estimation {
 namespace {

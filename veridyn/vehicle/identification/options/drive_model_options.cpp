@@ -236,7 +236,7 @@ const KeyTable<DriveModelOptions>& DriveModelOptions::keys() {
   AllTyresByNumbers::for_each([&]<typename Tyre>() { tyres.emplace_back(Tyre::kStudyName); });
   static const auto table =
       KeyTable<O>("identify")
-          .other({"tyre", "", internal::quoted(tyres, "`"), "\"linear\"", "law of the tyres"},
+          .other({"tyre", "", quoted_list(tyres, "`"), "\"linear\"", "law of the tyres"},
                  [tyres](const StudyTable& t, const std::string& key, O& o) {
                    o.tyre = tyre_named(t.choice_or(key, tyres, ""));
                    for (const DriveUnknown u : {DriveUnknown::kMu, DriveUnknown::kShape})

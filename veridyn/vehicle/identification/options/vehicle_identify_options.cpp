@@ -68,12 +68,12 @@ const KeyTable<VehicleIdentifyOptions>& VehicleIdentifyOptions::keys() {
                    {"PCA-GTLS", VehicleMethod::kPcaGtls}},
                   "whose parameters count; `auto`: output error where it converged, else the regression that the "
                   "comparison recommends")
-          .choice("structure", &O::structure, choices_of(kDriveStructureNames, {{"auto", std::nullopt}}),
+          .choice("structure", &O::structure,
+                  choices_of<std::optional<DriveStructure>>(kDriveStructureNames, {{"auto", {}}}),
                   "what moves and how tyres give; `auto`: the richest that the drive determines and asks for")
           .other(
               {"effects", "",
-               "`\"auto\"`, or a list of " +
-                   internal::quoted({kDriveEffectNames.begin(), kDriveEffectNames.end()}, "`"),
+               "`\"auto\"`, or a list of " + quoted_list({kDriveEffectNames.begin(), kDriveEffectNames.end()}, "`"),
                "\"auto\"",
                "what road, air and pedals add; `auto`: what the drive tells and asks for, nothing beside a structure "
                "that is given"},
