@@ -175,7 +175,7 @@ TEST(DriveModelOptions, RefuseByNameWhatTheStructureFrees) {
   EXPECT_THAT(refusal("estimate = [\"rol_arm\"]"), HasSubstr("'roll_arm'"));
   EXPECT_THAT(refusal("estimate = [\"E\"]"), HasSubstr("names E, which linear tyres do not have"));
   EXPECT_THAT(refusal("tyre = \"fiala\"\nestimate = [\"C\"]"), HasSubstr("names C, which fiala tyres do not have"));
-  EXPECT_THAT(refusal("smoothing = -1"), HasSubstr("must be >= 0 (0: none)"));
+  EXPECT_THAT(refusal("smoothing = -1"), HasSubstr("must be >= 0"));
   EXPECT_THAT(refusal("prior = { roll_damping = 0 }"), HasSubstr("roll_damping"));
   EXPECT_THAT(refusal("tyre = \"brush\""), HasSubstr("magic formula"));
 }

@@ -27,7 +27,7 @@ TEST(VehicleIdentifyOptions, RefuseWhatMakesNoSense) {
   EXPECT_NE(message("[identify]\neffects = [\"bank\"]\n").find("'bank', which is none of banked road, downforce"),
             std::string::npos);
   EXPECT_NE(message("[identify]\nestimate = [\"downforce_f\"]\n").find("identify.effects frees"), std::string::npos);
-  EXPECT_NE(message("[identify]\nuncertainty = { mass = -1 }\n").find("standard deviation"), std::string::npos);
+  EXPECT_NE(message("[identify]\nuncertainty = { mass = -1 }\n").find("must be >= 0"), std::string::npos);
 }
 
 TEST(VehicleIdentifyOptions, TakeEffectsByNameNoneOrThoseThatTheDriveTells) {
