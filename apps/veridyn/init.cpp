@@ -11,10 +11,12 @@
 #include "apps/veridyn/vehicle_template.hpp"
 #include "veridyn/aircraft/sensors/channel_map.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/core/text.hpp"
 #include "veridyn/recording/channel_recognition.hpp"
 #include "veridyn/recording/study_data.hpp"
 #include "veridyn/vehicle/identification/signals/drive_log.hpp"
+#include "veridyn/vehicle/vehicle_keys.hpp"
 
 namespace veridyn::app {
 namespace {
@@ -234,7 +236,7 @@ int init_vehicle(const Arguments& arguments) {
   const bool log = !arguments.text("--log").empty();
   const std::string data = log ? drive_section(arguments, kDriveLog) : kNoDriveLog;
   // A car to drive is given; that of a log is the user's to weigh and measure.
-  std::string study = filled(kVehicleStudy, "@DATA@", data);
+  std::string study = with_keys(filled(kVehicleStudy, "@DATA@", data), vehicle::study_keys());
   study = filled(study, "@MASS@", log ? "\"? kg\"   " : "\"1480 kg\"");
   study = filled(study, "@A@", log ? "\"? m\"   " : "\"1.14 m\"");
   study = filled(study, "@B@", log ? "\"? m\"   " : "\"1.50 m\"");

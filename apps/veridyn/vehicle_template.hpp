@@ -2,7 +2,7 @@
 
 namespace veridyn::app {
 
-/// What `veridyn init vehicle` writes; "@DATA@" stands for the lines of the log.
+/// What `veridyn init vehicle` writes; "@DATA@" stands for the lines of the log; see `with_keys` for those of `@keys`.
 constexpr const char* kVehicleStudy = R"toml(# A study of a road vehicle: drive it, identify it from a log, scale it.
 #   veridyn simulate study.toml         drives the manoeuvre below, with a report
 #   veridyn identify study.toml         from a drive log to parameters with error bars, validated on held-out data;
@@ -67,32 +67,21 @@ set = "reference"                  # production-car sensors; "perfect"
 # ---- A recorded drive ------------------------------------------------------------------------------------------------
 @DATA@
 [signals]
-# steering_ratio = 16              # where the log has the hand wheel
-# roll_gradient = 0.0089           # rad per m/s^2: what the body's lean adds to accel_y is taken off
-# accel_position = [0, 0, 0]       # where the accelerometer sits
-# pass_band = "2 Hz"
+@keys signals steering_ratio roll_gradient accel_position pass_band
 
 [segments]
-# min_speed = "3 m/s"
-# min_lateral_acceleration = "0.3 m/s^2"   # of what counts; without it a gentle drive sets it lower
-# holdout = 0.33                   # share of the excited time that identification never sees
+@keys segments min_speed min_lateral_acceleration holdout
 
 [identify]
-# method = "auto"                  # "output error", "GTLS", ...
-# structure = "auto"               # as the drive asks for; fixed: "bicycle", "roll", ... (docs/vehicle.md)
-# tyre = "linear"                  # "fiala": mu too; "magic formula": mu and shape
-# estimate = ["C_f", "C_r", "I_z", "steer_bias", "yaw_rate_bias", "accel_y_bias"]   # also steer_scale, delays, mu, a
-# profiles = ["C_f", "C_r"]        # profile likelihood of these; true: of all that are estimated
-# [identify.uncertainty]
-# mass = "20 kg"                   # how well what is taken as known is known
+@keys identify method structure tyre estimate profiles
+# [identify.uncertainty]           # how well what is taken as known is known
+@keys identify.uncertainty mass a
 
 [validate]
-# segments = "all"                 # where an estimate of another drive is validated; "holdout"
-# open_loop = "10 min"             # and driven this long from steering and speed alone
+@keys validate segments open_loop
 
 [track]
-# memory = "100 s"
-# false_alarm_interval = "36000 s"
+@keys track memory false_alarm_interval
 
 # ---- Another size ----------------------------------------------------------------------------------------------------
 [scale]

@@ -156,5 +156,16 @@ TEST(StudyKeys, DescribeThemselvesWithDefaultsThatTheStudyWouldTake) {
   EXPECT_THAT(commented_line(all[0].keys[0]), HasSubstr("# rate = \"50 Hz\""));
 }
 
+TEST(StudyKeys, StandCommentedInAStudyToStartFrom) {
+  const std::string study = with_keys("[thing]\n@keys thing rate filter throw\nrate = 3\n", keys().described());
+  EXPECT_EQ(study,
+            "[thing]\n"
+            "# rate = \"50 Hz\"                   # of the grid\n"
+            "# filter = \"none\"                  # of noise: \"none\", \"Butterworth\"\n"
+            "# throw = ...                      # of the surface; by default not known\n"
+            "rate = 3\n");
+  EXPECT_THROW(static_cast<void>(with_keys("@keys thing rat\n", keys().described())), std::logic_error);
+}
+
 }  // namespace
 }  // namespace veridyn

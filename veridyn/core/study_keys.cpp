@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
+#include <sstream>
+#include <stdexcept>
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/units.hpp"
@@ -34,9 +37,45 @@ std::string in_markdown(const StudyKeys& table) {
 std::string commented_line(const StudyKey& key) {
   const std::string left =
       fmt::format("# {} = {}", key.name, key.otherwise.empty() || key.in_words ? "..." : key.otherwise);
-  std::string right = key.says;
-  if (key.in_words) right += fmt::format("; default: {}", key.otherwise);
-  return fmt::format("{:<34} # {}\n", left, right);
+  // The rest of the sentence is in the docs.
+  std::string right = key.says.substr(0, key.says.find_first_of(";:"));
+  if (!key.range.empty() && key.range.front() == '`') right += ": " + key.range;
+  if (key.in_words) right += "; by default " + key.otherwise;
+  std::erase(right, '`');
+  constexpr std::size_t kColumn = 35, kWidth = 120;
+  std::string lines = fmt::format("{:<{}}#", left, std::max(kColumn, left.size() + 1));
+  std::size_t used = lines.size();
+  std::istringstream words(right);
+  for (std::string word; words >> word; used += 1 + word.size()) {
+    if (used + 1 + word.size() > kWidth) {
+      lines += fmt::format("\n{:<{}}#", "", kColumn);
+      used = kColumn + 1;
+    }
+    lines += ' ' + word;
+  }
+  return lines + '\n';
+}
+
+std::string with_keys(std::string_view study, const std::vector<StudyKeys>& tables) {
+  std::istringstream lines{std::string(study)};
+  std::string filled;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string mark, table, key;
+    words >> mark >> table;
+    if (mark != "@keys") {
+      filled += line + '\n';
+      continue;
+    }
+    const auto found = std::ranges::find(tables, table, &StudyKeys::table);
+    if (found == tables.end()) throw std::logic_error("no table " + table);
+    while (words >> key) {
+      const auto of = std::ranges::find(found->keys, key, &StudyKey::name);
+      if (of == found->keys.end()) throw std::logic_error(fmt::format("no key {}.{}", table, key));
+      filled += commented_line(*of);
+    }
+  }
+  return filled;
 }
 
 std::string quoted_list(const std::vector<std::string>& texts, std::string_view mark) {
@@ -66,11 +105,15 @@ void check(const StudyTable& table, const std::string& name, const std::string& 
 
 std::string shown(double si, std::string_view unit) {
   if (!std::isfinite(si)) return {};
-  if (unit.empty() || unit == "1") return fmt::format("{:.6g}", si);
+  // A long time in plain figures: 3600000 s.
+  const auto plain = [](double x) {
+    return x == std::round(x) && std::abs(x) < 1e9 ? fmt::format("{:.0f}", x) : fmt::format("{:.6g}", x);
+  };
+  if (unit.empty() || unit == "1") return plain(si);
   for (const auto& [radians, degrees] : {std::pair{"rad", "deg"}, std::pair{"rad/s", "deg/s"}})
     if (unit == radians && rounder_in_degrees(si, parse_unit(degrees)))
-      return fmt::format("\"{:.6g} {}\"", parse_unit(degrees).from_si(si), degrees);
-  return fmt::format("\"{:.6g} {}\"", si, unit);
+      return fmt::format("\"{} {}\"", plain(parse_unit(degrees).from_si(si)), degrees);
+  return fmt::format("\"{} {}\"", plain(si), unit);
 }
 
 std::string shown(const std::vector<double>& si, std::string_view unit) {

@@ -64,6 +64,11 @@ struct StudyKeys {
 /// `# name = default   # what it is for`, as a study to start from has it.
 [[nodiscard]] std::string commented_line(const StudyKey& key);
 
+/// A study to start from: each line `@keys TABLE KEY KEY ...` of the template becomes the commented lines of these
+/// keys.
+/// @throws std::logic_error for a table or key that `tables` does not have
+[[nodiscard]] std::string with_keys(std::string_view study, const std::vector<StudyKeys>& tables);
+
 /// `"a", "b"`, each with `mark` around it.
 [[nodiscard]] std::string quoted_list(const std::vector<std::string>& texts, std::string_view mark = {});
 
