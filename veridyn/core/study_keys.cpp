@@ -84,6 +84,12 @@ std::string quoted_list(const std::vector<std::string>& texts, std::string_view 
   return all;
 }
 
+void refuse_missing(const StudyTable& table, const std::vector<std::string>& keys) {
+  if (keys.empty()) return;
+  if (keys.size() == 1) table.fail(keys.front(), "is missing");
+  throw InputError(table.place(""), fmt::format("{} are missing", fmt::join(keys, ", ")));
+}
+
 namespace internal {
 namespace {
 
@@ -141,12 +147,6 @@ long long integer_in(const StudyTable& table, const std::string& name, long long
   const long long value = table.integer(name);
   if (value < least || value > most) table.fail(name, fmt::format("= {} must be from {} to {}", value, least, most));
   return value;
-}
-
-void refuse_missing(const StudyTable& table, const std::vector<std::string>& keys) {
-  if (keys.empty()) return;
-  if (keys.size() == 1) table.fail(keys.front(), "is missing");
-  throw InputError(table.place(""), fmt::format("{} are missing", fmt::join(keys, ", ")));
 }
 
 }  // namespace internal

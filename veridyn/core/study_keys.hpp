@@ -72,6 +72,10 @@ struct StudyKeys {
 /// `"a", "b"`, each with `mark` around it.
 [[nodiscard]] std::string quoted_list(const std::vector<std::string>& texts, std::string_view mark = {});
 
+/// Keys that a table must have and has not.
+/// @throws InputError naming all of them, where there are any
+void refuse_missing(const StudyTable& table, const std::vector<std::string>& keys);
+
 namespace internal {
 
 [[nodiscard]] std::string shown(double si, std::string_view unit);
@@ -83,9 +87,6 @@ namespace internal {
 [[nodiscard]] std::vector<double> numbers_in(const StudyTable& table, const std::string& name, const std::string& unit,
                                              const KeyRange& range, std::size_t size);
 [[nodiscard]] long long integer_in(const StudyTable& table, const std::string& name, long long least, long long most);
-
-/// @throws InputError naming all of them, where there are any
-void refuse_missing(const StudyTable& table, const std::vector<std::string>& keys);
 
 }  // namespace internal
 
@@ -305,7 +306,7 @@ class KeyTable {
         missing.push_back(name);
     }
     for (const Within& within : within_) within.take(table, object);
-    internal::refuse_missing(table, missing);
+    refuse_missing(table, missing);
     for (const auto& rule : checks_) rule(table, object);
   }
   [[nodiscard]] T read(const StudyTable& table) const {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "veridyn/core/at_place.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/vehicle/similarity/scaled_drive.hpp"
 #include "veridyn/vehicle/simulation/trajectory_table.hpp"
 
@@ -44,7 +45,7 @@ ScaleStudy read_scale_study(const StudyTable& root, const Progress& progress) {
   if (study.simulation.manoeuvre.amplitude != 0.0) study.prototype.steer = study.simulation.manoeuvre.amplitude;
   const StudyTable scale = root.table("scale");
   study.prototype.further = read_similarity_parameters(scale);
-  study.request = read_scale_request(scale);
+  study.request = ScaleRequest::keys().read(scale);
   study.repeating = scale.has("repeating") ? scale.texts("repeating")
                                            : std::vector<std::string>(default_repeating_variables().begin(),
                                                                       default_repeating_variables().end());

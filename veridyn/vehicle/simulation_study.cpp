@@ -2,12 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <cmath>
 #include <variant>
 
 #include "veridyn/core/at_place.hpp"
 #include "veridyn/core/enum_array.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/vehicle/road/road_study.hpp"
 
 namespace veridyn::vehicle {
@@ -15,25 +16,12 @@ namespace {
 
 constexpr EnumArray<VehicleModelKind, const char*, 3> kModels{"linear bicycle", "bicycle", "four-wheel"};
 
-VehicleModelKind read_model(const StudyTable& drive) {
-  const std::string word =
-      drive.choice_or("model", std::vector<std::string>(kModels.begin(), kModels.end()), "four-wheel");
-  for (const auto kind : {VehicleModelKind::kLinearBicycle, VehicleModelKind::kBicycle}) {
-    if (to_string(kind) == word) return kind;
-  }
-  return VehicleModelKind::kFourWheel;
-}
-
-FourWheelOptions read_options(const StudyTable& drive, const Vehicle& vehicle) {
-  static const std::vector<std::string> kConventions{"first principles", "source"};
-  static const std::vector<std::string> kGeometries{"exact", "small angles"};
+FourWheelOptions options_of(const DriveKeys& keys, const Vehicle& vehicle) {
   FourWheelOptions options = four_wheel_options(vehicle);
-  options.gravity = drive.positive_or("gravity", "m/s^2", options.gravity);
-  if (drive.choice_or("convention", kConventions, "first principles") == "source")
-    options.convention = FourWheelConvention::kSource;
-  if (drive.choice_or("geometry", kGeometries, "exact") == "small angles")
-    options.geometry = BicycleGeometry::kSmallAngles;
-  if (!drive.flag_or("longitudinal", false)) options.longitudinal.reset();
+  options.gravity = keys.gravity;
+  options.convention = keys.convention;
+  options.geometry = keys.geometry;
+  if (!keys.longitudinal) options.longitudinal.reset();
   return options;
 }
 
@@ -52,24 +40,58 @@ MagicFormulaTyre<double> slipperier(MagicFormulaTyre<double> tyre, double grip) 
   return tyre;
 }
 
-std::vector<GripChange> read_grip(const StudyTable& drive) {
-  std::vector<GripChange> changes;
-  for (const StudyTable& table : drive.tables("change")) {
+void read_grip(const StudyTable& drive, const std::string& key, DriveKeys& keys) {
+  for (const StudyTable& table : drive.tables(key)) {
     GripChange change;
     change.time = table.number("time", "s");
-    if (!changes.empty() && !(change.time > changes.back().time))
+    if (!keys.grip.empty() && !(change.time > keys.grip.back().time))
       table.fail("time", "must be later than the one before");
     const double both = table.positive_or("grip", "1", 1.0);
     change.front = table.positive_or("front", "1", both);
     change.rear = table.positive_or("rear", "1", both);
-    changes.push_back(change);
+    keys.grip.push_back(change);
   }
-  return changes;
 }
 
 }  // namespace
 
 std::string_view to_string(VehicleModelKind kind) { return kModels[kind]; }
+
+const KeyTable<DriveKeys>& DriveKeys::keys() {
+  using K = DriveKeys;
+  using S = SimulationOptions;
+  const auto simulation = [](auto member) { return [member](K& keys) -> double& { return keys.simulation.*member; }; };
+  static const auto table =
+      KeyTable<K>("drive", "How the vehicle is driven, whatever the manoeuvre.")
+          .choice("model", &K::model,
+                  {{kModels[VehicleModelKind::kLinearBicycle], VehicleModelKind::kLinearBicycle},
+                   {kModels[VehicleModelKind::kBicycle], VehicleModelKind::kBicycle},
+                   {kModels[VehicleModelKind::kFourWheel], VehicleModelKind::kFourWheel}},
+                  "what moves")
+          .number("speed", &K::speed, "m/s", kPositive, "kept, unless `longitudinal`")
+          .otherwise("required, but for a built-in vehicle")
+          .other({"manoeuvre", "", quoted_list({manoeuvre_names().begin(), manoeuvre_names().end()}, "`"),
+                  "\"reference\"", "what is steered"},
+                 [](const StudyTable&, const std::string&, K&) {})
+          .number("duration", &K::duration, "s", kPositive, "of the drive")
+          .otherwise("that of the manoeuvre")
+          .number("step", simulation(&S::step), "s", kPositive, "of the integration")
+          .number("output_step", simulation(&S::output_step), "s", kPositive, "of the results, a multiple of `step`")
+          .number("gravity", &K::gravity, "m/s^2", kPositive, "where the vehicle drives")
+          .flag("longitudinal", &K::longitudinal,
+                "speed follows from torques, drag and grade of `[subject.longitudinal]`")
+          .choice(
+              "convention", &K::convention,
+              {{"first principles", FourWheelConvention::kFirstPrinciples}, {"source", FourWheelConvention::kSource}},
+              "`source`: that of the published similarity study")
+          .choice("geometry", &K::geometry,
+                  {{"exact", BicycleGeometry::kExact}, {"small angles", BicycleGeometry::kSmallAngles}},
+                  "of the four-wheel model")
+          .other({"change", "", "tables `[[drive.change]]` with `time` and `grip`, or `front` and `rear`", "none",
+                  "from `time` on tyres have this share of the stiffness and friction of the beginning", true},
+                 read_grip);
+  return table;
+}
 
 SimulationStudy read_simulation_study(const StudyTable& root, const Progress& progress) {
   SimulationStudy study;
@@ -78,18 +100,20 @@ SimulationStudy read_simulation_study(const StudyTable& root, const Progress& pr
   if (seed < 0) root.fail("seed", "must not be negative");
   study.seed = static_cast<std::uint64_t>(seed);
   const StudyTable drive = root.table_or_empty("drive");
-  study.model = read_model(drive);
+  const DriveKeys keys = DriveKeys::keys().read(drive);
+  study.model = keys.model;
   study.vehicle =
       read_vehicle(root.table("subject"),
                    study.model == VehicleModelKind::kFourWheel ? VehicleNeeds::kFourWheel : VehicleNeeds::kBicycle);
   study.inputs = study.vehicle.inputs;
-  study.four_wheel = read_options(drive, study.vehicle);
+  study.four_wheel = options_of(keys, study.vehicle);
   if (study.four_wheel.longitudinal && study.model != VehicleModelKind::kFourWheel)
     drive.fail("longitudinal", "needs model = \"four-wheel\"");
 
   SimulationOptions& s = study.simulation;
-  s.speed = drive.has("speed") || !study.vehicle.speed ? drive.number("speed", "m/s") : *study.vehicle.speed;
-  if (!(s.speed > 0.0)) drive.fail("speed", fmt::format("is {:g} m/s; must be > 0", s.speed));
+  s = keys.simulation;
+  if (std::isnan(keys.speed) && !study.vehicle.speed) drive.fail("speed", "is missing");
+  s.speed = std::isnan(keys.speed) ? *study.vehicle.speed : keys.speed;
   ManoeuvreContext context{.parameters = study.vehicle.parameters,
                            .speed = s.speed,
                            .gravity = study.four_wheel.gravity,
@@ -99,14 +123,12 @@ SimulationStudy read_simulation_study(const StudyTable& root, const Progress& pr
   context.C_f = C_f;
   context.C_r = C_r;
   study.manoeuvre = read_manoeuvre(drive, context, progress);
-  s.duration = drive.positive_or("duration", "s", study.manoeuvre.default_duration);
-  s.step = drive.positive_or("step", "s", s.step);
-  s.output_step = drive.positive_or("output_step", "s", s.output_step);
+  s.duration = std::isnan(keys.duration) ? study.manoeuvre.default_duration : keys.duration;
   at_place(root.place("drive"), [&] { s.validate(); });
   if (!study.manoeuvre.speed.empty() && !study.four_wheel.longitudinal)
     drive.fail("manoeuvre", "changes its speed, which needs `longitudinal = true`");
 
-  study.grip = read_grip(drive);
+  study.grip = keys.grip;
   if (root.has("road")) {
     study.road = read_road(root.table("road"), study.seed);
     if (study.road && study.model != VehicleModelKind::kFourWheel)

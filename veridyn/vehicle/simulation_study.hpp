@@ -38,6 +38,20 @@ struct GripChange {
   double front = 1.0, rear = 1.0;
 };
 
+/// The keys of `[drive]` for every manoeuvre.
+struct DriveKeys {
+  VehicleModelKind model = VehicleModelKind::kFourWheel;
+  double speed = kNaN;     ///< NaN: that of the built-in vehicle
+  double duration = kNaN;  ///< NaN: that of the manoeuvre
+  SimulationOptions simulation = {};
+  double gravity = kGravity;
+  bool longitudinal = false;
+  FourWheelConvention convention = FourWheelConvention::kFirstPrinciples;
+  BicycleGeometry geometry = BicycleGeometry::kExact;
+  std::vector<GripChange> grip = {};
+  [[nodiscard]] static const KeyTable<DriveKeys>& keys();
+};
+
 /// What a study drives: vehicle, model, manoeuvre and road, read and checked.
 struct SimulationStudy {
   std::string title;
@@ -57,23 +71,10 @@ struct SimulationStudy {
 ///
 ///     title = "step steer at 100 km/h"
 ///     seed = 1
-///     [subject]                      # see read_vehicle
-///     [drive]
-///     model = "four-wheel"           # "bicycle", "linear bicycle"
-///     speed = "100 km/h"             # kept, unless `longitudinal`; a built-in vehicle has one
-///     manoeuvre = "step steer"       # and its keys: see read_manoeuvre
-///     duration = 20                  # [s]; that of the manoeuvre when left out
-///     step = 0.001                   # of the integration [s]
-///     output_step = 0.01             # of the results [s]
-///     gravity = 9.80665              # [m/s^2]
-///     longitudinal = false           # true: speed follows from torques, drag and grade ([subject.longitudinal])
-///     convention = "first principles"  # "source": that of the published similarity study
-///     geometry = "exact"             # four-wheel: "small angles"
-///     [[drive.change]]               # the tyres change on the way, by time
-///     time = 60                      # [s]
-///     grip = 0.6                     # factor on stiffness and friction of the beginning; or `front`, `rear`
-///     [road]                         # see read_road; needs the four-wheel model
-///     [sensors]                      # see read_drive_sensors; with it what sensors record is written too
+///     [subject]   see read_vehicle
+///     [drive]     see DriveKeys and read_manoeuvre
+///     [road]      see read_road; needs the four-wheel model
+///     [sensors]   see read_drive_sensors; with it what sensors record is written too
 ///
 /// Tables of the analysis (`[data]`, `[identify]` ...) are left to others.
 /// @throws InputError with file, line and key.

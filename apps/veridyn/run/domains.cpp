@@ -117,7 +117,6 @@ Domain domain_of(const Study& study) {
     if (subject.is_text("kind"))
       subject.fail("kind", fmt::format("there is no kind '{}'{}; studies of aircraft have none", subject.text("kind"),
                                        suggestion(subject.text("kind"), kinds)));
-    if (named("drive")) subject.fail("kind", "is missing: a study with [drive] is of a vehicle, kind = \"vehicle\"");
     if (named("motion"))
       subject.fail("model", "is missing: a study with [motion] is of a musculoskeletal model, such as model = \"arm\"");
   }

@@ -12,6 +12,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/vehicle/similarity/builtin_subject.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/numerics/ode.hpp"
 #include "veridyn/vehicle/model/bicycle_model.hpp"
 #include "veridyn/vehicle/model/builtin_vehicles.hpp"
@@ -241,7 +242,7 @@ unit = "deg"
 )",
                                    "study.toml");
   const StudyTable table = study.root().table("scale");
-  const ScaleRequest request = read_scale_request(table);
+  const ScaleRequest request = ScaleRequest::keys().read(table);
   EXPECT_EQ(request.length_ratio, 0.2);
   EXPECT_FALSE(request.mass.has_value());
   EXPECT_NEAR(*request.speed, 8.0 / 3.6, 1e-12);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -141,30 +142,10 @@ struct ManoeuvreContext {
 [[nodiscard]] Manoeuvre constant_radius_circle(const ManoeuvreContext& context, double radius, double end_speed,
                                                double duration = 120.0, const PreviewDriverOptions& options = {});
 
-/// Reads `[drive]`; keys (with defaults):
-///
-/// - `manoeuvre`: "reference" (default), "step steer", "sine", "continuous sine", "sine with dwell", "sweep", "random
-///   steer", "fishhook", "steady-state circle", "double lane change", "obstacle avoidance", "slalom", "ramp steer",
-///   "braking in a turn", "follow path", "signal";
-/// - `amplitude` [rad] (`"5 deg"`): steer at the road wheels; 2 deg by default, less than 90 deg. `start` [s] (1).
-/// - step steer: `rise_time` (0.1 s). sine, sine with dwell: `frequency` [Hz] (0.5; 0.7), `periods` (3), `dwell` (0.5
-/// s).
-/// - sweep, random steer: `low`, `high` [Hz] (0.1, 4), `length` [s] (60), `seed`.
-/// - fishhook: `rate` [rad/s] (0.75: 720 deg/s at the hand wheel, ratio 17), `dwell` (0.25 s).
-/// - steady-state circle: `method` = "constant speed" (default; `rate` [rad/s], 0.2 deg/s) or "constant radius"
-///   (`radius` [m], `end_speed` [m/s], `length` [s]).
-/// - ramp steer: `amplitude` (5 deg), `rate` [rad/s] (1 deg/s), `hold` (2 s).
-/// - slalom: `cones` (8), `spacing` (18 m), `clearance` (0.5 m), `vehicle_width` and the overhangs as below.
-/// - braking in a turn, with `longitudinal = true`: `radius` (100 m; negative: to the right), `deceleration` (4 m/s^2),
-///   `brake_time` (15 s).
-/// - double lane change, obstacle avoidance: `vehicle_width` [m] (7/6 of the track), `course_scale` (1),
-/// `front_overhang`, `rear_overhang`
-///   [m] (0). follow path: `file`, or `radius` and `direction` = "left" | "right" of a circle.
-/// - all, with `longitudinal = true`: `hold_speed` (false) or `target_speed` [m/s]: drive and brakes keep it;
-///   `drive_torque`, `brake_torque` [N m]: a number, or as many as there are in `torque_time` [s], straight between.
-/// - drivers of paths: `preview_time`, `delay`, `lag` [s], `max_steer` [rad], `max_steer_rate` [rad/s].
-/// - signal: `file` (CSV with time[s], steer[rad], and optionally drive_torque[N m], brake_torque[N m]) or arrays
-///   `time` and `steer`.
+/// As studies name them; the first is the default.
+[[nodiscard]] std::span<const std::string> manoeuvre_names();
+
+/// Reads `[drive]`: `manoeuvre` and its keys, see manoeuvre_keys.hpp.
 ///
 /// Keys that other readers take from `[drive]` (speed, duration, step, ...) are left to them. An interrupted `progress`
 /// ends the preparation of a random steer early.

@@ -9,9 +9,11 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/core/text.hpp"
 #include "veridyn/estimation/judgement/subject_grades.hpp"
 #include "veridyn/vehicle/model/builtin_vehicles.hpp"
+#include "veridyn/vehicle/model/subject_keys.hpp"
 #include "veridyn/vehicle/model/suspension_study.hpp"
 #include "veridyn/vehicle/tyre/tir_reader.hpp"
 
@@ -90,27 +92,13 @@ KnownVehicle with_parameters(const StudyTable& table, KnownVehicle known) {
   return known;
 }
 
-LongitudinalParameters read_longitudinal(const StudyTable& table) {
-  LongitudinalParameters l;
-  l.front_drive_share = table.number_or("front_drive_share", "1", l.front_drive_share);
-  l.front_brake_share = table.number_or("front_brake_share", "1", l.front_brake_share);
-  l.wheel_radius = table.number_or("wheel_radius", "m", l.wheel_radius);
-  l.wheel_inertia = table.number_or("wheel_inertia", "kg m^2", l.wheel_inertia);
-  l.drag_area = table.number_or("drag_area", "m^2", l.drag_area);
-  l.air_density = table.number_or("air_density", "kg/m^3", l.air_density);
-  l.rolling_resistance = table.number_or("rolling_resistance", "1", l.rolling_resistance);
-  l.grade = table.number_or("grade", "rad", l.grade);
-  if (const std::string why = inadmissible(l); !why.empty()) throw InputError(table.path(), why);
-  return l;
-}
-
 /// With the axles of `[subject.suspension]`: the rate of a spring by table at rest is K_s, for all that asks for it.
 KnownVehicle with_suspension(const StudyTable& subject, KnownVehicle known) {
   if (!subject.has("suspension")) return known;
   const StudyTable table = subject.table("suspension");
   for (const char suffix : {'f', 'r'}) {
     AxleSuspension& axle = suffix == 'f' ? known.vehicle.suspension_f : known.vehicle.suspension_r;
-    axle = read_axle_suspension(table, suffix, axle);
+    suspension_keys(suffix).read(table, axle);
     if (axle.spring.empty()) continue;
     const std::string rate = fmt::format("K_s{}", suffix);
     if (subject.has(rate))
@@ -147,6 +135,22 @@ void check(const StudyTable& subject, const VehicleParameters<double>& p) {
 
 bool is_file(const std::string& tyre) { return tyre.ends_with(".tir") || tyre.ends_with(".TIR"); }
 
+bool tyres_by_files(const StudyTable& subject) {
+  const StudyTable details = subject.table_or_empty("tyres");
+  return details.has("front") || details.has("rear") || is_file(subject.text_or("tyre", "linear"));
+}
+
+/// What is needed and not given; without what tyre files will give.
+std::vector<std::string> missing(const KnownVehicle& known, VehicleNeeds needs, bool tyres_by_files) {
+  constexpr std::array<std::string_view, 4> kOfTyres{"C_f", "C_r", "K_tf", "K_tr"};
+  std::vector<std::string> names;
+  for (const std::string_view name : needed(needs)) {
+    const bool by_file = tyres_by_files && std::ranges::find(kOfTyres, name) != kOfTyres.end();
+    if (!known.given[index_of(name)] && !by_file) names.emplace_back(name);
+  }
+  return names;
+}
+
 /// With what the tyre file of an axle gives apart from the forces.
 KnownVehicle with_axle(const TirFile& file, const std::filesystem::path& path, std::string_view stiffness,
                        KnownVehicle known) {
@@ -166,8 +170,7 @@ KnownVehicle with_axle(const TirFile& file, const std::filesystem::path& path, s
 KnownVehicle with_tyres(const StudyTable& subject, KnownVehicle known) {
   const StudyTable details = subject.table_or_empty("tyres");
   std::string kind = subject.text_or("tyre", "linear");
-  const bool by_axle = details.has("front") || details.has("rear");
-  if (by_axle || is_file(kind)) {
+  if (tyres_by_files(subject)) {
     std::filesystem::path both = is_file(kind) ? subject.file("tyre") : std::filesystem::path();
     const auto path_of = [&](const char* axle) {
       if (details.has(axle)) return details.file(axle);
@@ -273,9 +276,30 @@ FourWheelOptions four_wheel_options(const Vehicle& vehicle) {
 }
 
 bool is_vehicle_study(const StudyTable& root) {
-  if (!root.is_table("subject")) return false;
-  const StudyTable subject = root.table("subject");
-  return subject.is_text("kind") && subject.text("kind") == "vehicle";
+  // Not `has`: a key that `has` looked for counts as known, and these are known in some domains only.
+  const auto names_any = [](const StudyTable& table, const auto& wanted) {
+    const std::vector<std::string> keys = table.keys();
+    return std::ranges::any_of(keys, [&](const std::string& key) { return wanted(key); });
+  };
+  const auto names = [&](const StudyTable& table, std::string_view key) {
+    return names_any(table, [key](std::string_view k) { return k == key; });
+  };
+  if (names(root, "subject") && root.is_table("subject")) {
+    const StudyTable subject = root.table("subject");
+    if (names(subject, "kind")) return subject.is_text("kind") && subject.text("kind") == "vehicle";
+    if (names(subject, "builtin") && subject.is_text("builtin"))
+      return std::ranges::find(builtin_vehicles(), subject.text("builtin"), &BuiltinVehicle::name) !=
+             builtin_vehicles().end();
+    const auto of_vehicles = [](std::string_view key) {
+      return key != "mass" && index_of(key) < kVehicleFields.size();
+    };
+    if (names_any(subject, of_vehicles)) return true;
+    if (names(subject, "model")) return false;
+  }
+  if (names(root, "drive")) return true;
+  if (!names(root, "data") || !root.is_table("data") || !names(root.table("data"), "map")) return false;
+  const StudyTable map = root.table("data").table_or_empty("map");
+  return names(map, "steer") || names(map, "steering_wheel");
 }
 
 Vehicle read_vehicle(const StudyTable& subject, VehicleNeeds needs) {
@@ -295,21 +319,19 @@ Vehicle read_vehicle(const StudyTable& subject, VehicleNeeds needs) {
     vehicle.suspension_r = builtin.suspension_r;
     known.given.fill(true);
   }
-  vehicle.name = subject.text_or("name", vehicle.name.empty() ? "vehicle" : vehicle.name);
-  vehicle.description = subject.text_or("description", vehicle.description);
+  if (vehicle.name.empty()) vehicle.name = "vehicle";
+  vehicle_keys().read(subject, vehicle);
   known = with_parameters(subject, std::move(known));
+  known = with_suspension(subject, std::move(known));
+  refuse_missing(subject, missing(known, needs, tyres_by_files(subject)));
+  // What is assumed below follows from these.
   for (const std::string_view name : {"mass", "a", "b"}) {
     const std::size_t i = index_of(name);
-    if (!known.given[i]) static_cast<void>(subject.number(name, kVehicleFields[i].unit));  // says that it is missing
-    // What is assumed below follows from these.
     if (!(field_of(p, i) > 0.0))
       subject.fail(name, fmt::format("is {:g} {}; must be > 0", field_of(p, i), kVehicleFields[i].unit));
   }
-  known = with_suspension(subject, with_tyres(subject, std::move(known)));
-  for (const std::string_view name : needed(needs)) {
-    const std::size_t i = index_of(name);
-    if (!known.given[i]) static_cast<void>(subject.number(name, kVehicleFields[i].unit));
-  }
+  known = with_tyres(subject, std::move(known));
+  refuse_missing(subject, missing(known, needs, false));
   for (std::size_t i = 0; i < kVehicleFields.size(); ++i) {
     const std::string_view name = kVehicleFields[i].name;
     if (known.given[i] || name == "mu" || name == "K_bf" || name == "K_br") continue;
@@ -318,12 +340,8 @@ Vehicle read_vehicle(const StudyTable& subject, VehicleNeeds needs) {
   }
   check(subject, p);
   vehicle.tyres = tyres_of(subject, vehicle);
-  if (subject.has("longitudinal")) vehicle.longitudinal = read_longitudinal(subject.table("longitudinal"));
-  vehicle.ackermann = subject.number_or("ackermann", "1", 0.0);
-  vehicle.camber_per_roll = subject.number_or("camber_per_roll", "1", 0.0);
-  vehicle.relaxation_length = subject.number_or("relaxation_length", "m", 0.0);
+  if (subject.has("longitudinal")) longitudinal_keys().read(subject.table("longitudinal"), vehicle.longitudinal);
   vehicle = with_air(subject, std::move(vehicle));
-  vehicle.aligning_moment = subject.flag_or("aligning_moment", false);
   if (vehicle.aligning_moment && pneumatic_trail(vehicle.tyres) == 0.0)
     subject.fail("aligning_moment", "needs the tyres' pneumatic_trail in [subject.tyres], or tyre files with QDZ1");
   if (needs != VehicleNeeds::kGeometry) {

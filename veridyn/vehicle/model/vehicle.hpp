@@ -71,38 +71,11 @@ enum class VehicleNeeds {
   kFourWheel  ///< and all others but mu and anti-roll bars
 };
 
-/// A vehicle study is one whose `[subject]` says `kind = "vehicle"`.
+/// Whether a study is of a vehicle: its `[subject]` says `kind = "vehicle"`; where it says no kind, a built-in vehicle,
+/// a number that only vehicles have (`a`, `C_f`), a `[drive]`, or a steering channel in `[data.map]`.
 [[nodiscard]] bool is_vehicle_study(const StudyTable& root);
 
-/// Reads a vehicle from `[subject]` (or a table of the same keys):
-///
-///     kind = "vehicle"
-///     name = "my car"
-///     builtin = "reference"          # start from a built-in vehicle; every key below then overrides it
-///     file = "out/id/subject.toml"   # or from the [subject] of a file: one that `identify` wrote, say
-///     mass = "1100 kg"               # and the other names of kVehicleFields
-///     track = 1.5                    # both axles; so also K_s, C_s, K_b, K_t
-///     tyre = "linear"                # "fiala" (smooth friction limit, needs mu), "magic formula", or a .tir file
-///     ackermann = 0.0                # share of Ackermann geometry
-///     camber_per_roll = 0.0
-///     relaxation_length = "0.3 m"
-///     aligning_moment = false        # true: the tyres' aligning moments turn the vehicle
-///     [subject.tyres]                # details, each optional
-///     front = "front.tir"            # tyre files of the axles, instead of `tyre`
-///     rear = "rear.tir"
-///     slip_stiffness = 100000        # linear, fiala, magic formula: dFx/dkappa [N]; 1.3 C of the axle when left out
-///     C = 1.3                        # magic formula: shape; stiffness is C_f, C_r at the static load, friction mu
-///     E = 0.0                        # curvature
-///     mu_load = 0.0                  # dependence on load
-///     stiffness_saturation = 0.0
-///     pneumatic_trail = "30 mm"      # linear, fiala, magic formula: what an aligning moment needs
-///     [subject.suspension]           # see AxleSuspension; _f of the front axle, _r of the rear
-///     roll_centre_f = "60 mm"        # and roll_steer [rad/rad], bump_steer [rad/m], compliance_steer [rad/N]
-///     travel_f = [-0.08, 0, 0.08]    # of a spring by table, in place of K_s: travel [m] and force [N], both growing
-///     force_f = [-1600, 0, 2400]
-///     [subject.aerodynamics]         # areas of coefficients: see AerodynamicLift
-///     lift_area_f = 0.1              # [m^2], and lift_area_r, drag_area (that of [subject.longitudinal]), air_density
-///     [subject.longitudinal]         # see LongitudinalParameters; names as there
+/// Reads a vehicle from `[subject]`, or a table of the same keys: subject_keys.hpp.
 ///
 /// Numbers that `needs` does not ask for are assumed where they are missing, and listed. Where more than geometry is
 /// needed, parameters that their identification rejected are refused (`estimation::grades_warning`).

@@ -24,7 +24,7 @@ struct Obstacle {
   };
   enum class Side { kBoth, kLeft, kRight };
   Shape shape = Shape::kStep;
-  double at = 0.0;      ///< distance at which it begins [m]
+  double at = 10.0;     ///< distance at which it begins [m]
   double height = 0.0;  ///< may be negative: a hole [m]
   double length = 0.0;  ///< >= 0; > 0 of all but steps [m]
   Side side = Side::kBoth;

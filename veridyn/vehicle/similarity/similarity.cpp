@@ -10,6 +10,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -237,16 +238,20 @@ VehicleTrajectory scaled(const VehicleTrajectory& trajectory, const ScaleFactors
   return out;
 }
 
-ScaleRequest read_scale_request(const StudyTable& table) {
-  ScaleRequest request;
-  const auto read = [&table](const char* key, const char* unit) -> std::optional<double> {
-    return table.has(key) ? std::optional(table.positive(key, unit)) : std::nullopt;
-  };
-  request.length_ratio = read("length_ratio", "1");
-  request.mass = read("mass", "kg");
-  request.speed = read("speed", "m/s");
-  request.froude = table.flag_or("froude", false);
-  return request;
+const KeyTable<ScaleRequest>& ScaleRequest::keys() {
+  using R = ScaleRequest;
+  static const auto table =
+      KeyTable<R>("scale",
+                  "A dynamically similar vehicle of another size; at least one of size, mass and speed, or a "
+                  "`[scale.model]` to check, with keys of `[subject]` and its `speed`.")
+          .number("length_ratio", &R::length_ratio, "1", kPositive, "model over prototype")
+          .otherwise("cube root of the mass ratio, or with speed alone what keeps the time axis")
+          .number("mass", &R::mass, "kg", kPositive, "of the model")
+          .otherwise("by `length_ratio` cubed: the same density")
+          .number("speed", &R::speed, "m/s", kPositive, "of the model")
+          .otherwise("by `length_ratio`: the same time axis")
+          .flag("froude", &R::froude, "speed by the square root of the length ratio, so that gravity scales too");
+  return table;
 }
 
 std::vector<SimilarityParameter> read_similarity_parameters(const StudyTable& table) {

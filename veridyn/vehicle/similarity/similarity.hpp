@@ -82,6 +82,9 @@ struct ScaleRequest {
   std::optional<double> speed{};         ///< of the model [m/s]; by default length_ratio: same time axis
   /// Speed scales by sqrt(length_ratio) by default: then gravity scales as well, while time shrinks by the same root.
   bool froude = false;
+
+  /// Of the table `[scale]`.
+  [[nodiscard]] static const KeyTable<ScaleRequest>& keys();
 };
 
 /// A dynamically similar vehicle of another size.
@@ -152,8 +155,6 @@ struct SimilarityReport {
                                        std::span<const std::string> repeating = default_repeating_variables(),
                                        double tolerance_percent = 0.1);
 
-/// Reads `[scale]`: length_ratio, mass, speed, froude = true.
-[[nodiscard]] ScaleRequest read_scale_request(const StudyTable& scale);
 /// Reads `[[scale.parameter]]`: name, value (a number with unit as text, or plain with `unit`), symbol, affects.
 [[nodiscard]] std::vector<SimilarityParameter> read_similarity_parameters(const StudyTable& scale);
 

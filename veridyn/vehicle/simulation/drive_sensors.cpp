@@ -10,6 +10,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::vehicle {
@@ -39,33 +40,52 @@ DriveSensorSet reference_drive_sensors() {
   return set;
 }
 
+namespace {
+
+/// `[sensors.NAME]`, in the unit of that sensor.
+KeyTable<DriveSensor> keys_of_sensor(std::string_view unit, const std::string& table = "sensors.NAME") {
+  using S = DriveSensor;
+  const std::string u(unit);
+  return KeyTable<S>(table,
+                     "A sensor that differs from the set: `steer`, `speed`, `yaw_rate`, `accel_y`, `accel_x`, "
+                     "`lateral_velocity` or `position`.")
+      .flag("enabled", &S::enabled, "a table switches its sensor on")
+      .number("rate", &S::rate_Hz, "Hz", kPositive, "of its samples")
+      .number("sigma", &S::sigma, u, kNotNegative, "standard deviation of the white noise")
+      .number("bias", &S::bias, u, kAnyNumber, "fixed")
+      .number("bias_sigma", &S::bias_sigma, u, kNotNegative, "standard deviation of a further bias, drawn once a drive")
+      .number("scale", &S::scale, "1", {.low = -1.0, .with_low = false}, "error of scale")
+      .number("delay", &S::delay_s, "s", kAnyNumber, "from event to time stamp");
+}
+
+const KeyTable<DriveSensorSet>& keys_of_set() {
+  using S = DriveSensorSet;
+  static const auto table =
+      KeyTable<S>("sensors", "What records a simulated drive.")
+          .other({"set", "", "`\"reference\"`, `\"perfect\"`", "\"reference\"",
+                  "sensors of production cars, or the same without errors"},
+                 [](const StudyTable& t, const std::string& key, S& set) {
+                   if (t.choice_or(key, std::vector<std::string>{"reference", "perfect"}, "") == "reference") return;
+                   for (DriveSensor& sensor : set.sensors)
+                     sensor = {.enabled = sensor.enabled, .rate_Hz = sensor.rate_Hz};
+                 })
+          .numbers("accel_position", &S::accel_position, "m", kAnyNumber,
+                   "of the accelerometer from the centre of gravity: forward, left, up")
+          .flag("feels_gravity", &S::feels_gravity, "the accelerometer rolls and pitches with the body");
+  return table;
+}
+
+}  // namespace
+
+std::vector<StudyKeys> drive_sensor_keys() { return all_of(keys_of_set(), keys_of_sensor("1")); }
+
 DriveSensorSet read_drive_sensors(const StudyTable& table) {
-  const std::vector<std::string> sets{"reference", "perfect"};
   DriveSensorSet set = reference_drive_sensors();
-  if (table.choice_or("set", sets, "reference") == "perfect") {
-    for (DriveSensor& sensor : set.sensors) sensor = {.enabled = sensor.enabled, .rate_Hz = sensor.rate_Hz};
-  }
-  if (table.has("accel_position")) {
-    const std::vector<double> p = table.numbers("accel_position", "m");
-    if (p.size() != 3) table.fail("accel_position", fmt::format("has {} numbers; must have 3: x, y, z", p.size()));
-    std::copy(p.begin(), p.end(), set.accel_position.begin());
-  }
-  set.feels_gravity = table.flag_or("feels_gravity", set.feels_gravity);
+  keys_of_set().read(table, set);
   for (const DriveSensorKind kind : enumerators<DriveSensorKind, kDriveSensors>()) {
     if (!table.has(kDriveSensorNames[kind])) continue;
-    const StudyTable t = table.table(kDriveSensorNames[kind]);
-    const std::string_view unit = kDriveSensorUnits[kind];
-    DriveSensor& s = set[kind];
-    s.enabled = t.flag_or("enabled", true);
-    s.rate_Hz = t.positive_or("rate", "Hz", s.rate_Hz);
-    s.sigma = t.number_or("sigma", unit, s.sigma);
-    s.bias = t.number_or("bias", unit, s.bias);
-    s.bias_sigma = t.number_or("bias_sigma", unit, s.bias_sigma);
-    s.scale = t.number_or("scale", "1", s.scale);
-    s.delay_s = t.number_or("delay", "s", s.delay_s);
-    if (!(s.sigma >= 0.0)) t.fail("sigma", fmt::format("= {:g} must be >= 0", s.sigma));
-    if (!(s.bias_sigma >= 0.0)) t.fail("bias_sigma", fmt::format("= {:g} must be >= 0", s.bias_sigma));
-    if (!(s.scale > -1.0)) t.fail("scale", fmt::format("= {:g} must be > -1", s.scale));
+    set[kind].enabled = true;
+    keys_of_sensor(kDriveSensorUnits[kind]).read(table.table(kDriveSensorNames[kind]), set[kind]);
   }
   return set;
 }

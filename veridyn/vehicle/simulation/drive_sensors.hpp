@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/enum_array.hpp"
@@ -15,12 +16,12 @@ namespace veridyn::vehicle {
 /// Error model of one channel: y = bias + (1 + scale) y_true + white noise, at the rate of the sensor, stamped late.
 struct DriveSensor {
   bool enabled = true;
-  double rate_Hz = 100.0;   ///< `rate`
-  double sigma = 0.0;       ///< `sigma`: standard deviation of the white noise
-  double bias = 0.0;        ///< `bias`: fixed
-  double bias_sigma = 0.0;  ///< `bias_sigma`: standard deviation of a further fixed bias, drawn once per drive
-  double scale = 0.0;       ///< `scale`: error of scale [-]
-  double delay_s = 0.0;     ///< `delay`: from event to time stamp
+  double rate_Hz = 100.0;
+  double sigma = 0.0;       ///< of the white noise
+  double bias = 0.0;        ///< fixed
+  double bias_sigma = 0.0;  ///< of a further fixed bias, drawn once per drive
+  double scale = 0.0;       ///< error of scale [-]
+  double delay_s = 0.0;     ///< from event to time stamp
   friend bool operator==(const DriveSensor&, const DriveSensor&) = default;
 };
 
@@ -56,10 +57,10 @@ struct DriveSensorSet {
 /// corrections, 0.05 m at 10 Hz) are off.
 [[nodiscard]] DriveSensorSet reference_drive_sensors();
 
-/// Reads `[sensors]`: `set = "reference"` (or "perfect": the same without errors), `accel_position`, `feels_gravity`,
-/// then a table for each sensor that differs, `[sensors.yaw_rate]` with `enabled`, `rate`, `sigma`, `bias`,
-/// `bias_sigma`, `scale`, `delay`.
-/// @throws InputError naming file, line and key.
+/// The keys of `[sensors]` and of a sensor's table in it, `[sensors.yaw_rate]`.
+[[nodiscard]] std::vector<StudyKeys> drive_sensor_keys();
+
+/// Reads `[sensors]`. @throws InputError naming file, line and key.
 [[nodiscard]] DriveSensorSet read_drive_sensors(const StudyTable& table);
 
 /// What the sensors record of a drive: a recording in frame flu, each sensor on a time base of its rate, values between

@@ -86,9 +86,12 @@ struct SimpleMagicFormulaTyre {
                           .otherwise = "is {:g}; must be at most 1"},
                       Key{.name = "mu_load",
                           .value = &SimpleMagicFormulaTyre::mu_load,
+                          .meaning = "p of mu = mu_0/(1 + p (F_z/F_z0 - 1))",
                           .is_admissible = [](double value) { return value >= 0.0 && value < 1.0; },
                           .otherwise = "must be from 0 to below 1"},
-                      Key{.name = "stiffness_saturation", .value = &SimpleMagicFormulaTyre::stiffness_saturation}};
+                      Key{.name = "stiffness_saturation",
+                          .value = &SimpleMagicFormulaTyre::stiffness_saturation,
+                          .meaning = "1/PKY2 of a tyre file; 0: stiffness in proportion to the load"}};
   }
 
   template <typename Other>
