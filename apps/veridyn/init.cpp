@@ -14,6 +14,7 @@
 #include "veridyn/core/study_keys.hpp"
 #include "veridyn/core/text.hpp"
 #include "veridyn/recording/channel_recognition.hpp"
+#include "veridyn/recording/consistency.hpp"
 #include "veridyn/recording/study_data.hpp"
 #include "veridyn/vehicle/identification/signals/drive_log.hpp"
 #include "veridyn/vehicle/vehicle_keys.hpp"
@@ -223,13 +224,34 @@ int init_aircraft(const Arguments& arguments) {
   return write_study(arguments, study, "fill in the subject, confirm [data.map]");
 }
 
+/// Units, signs and axes of a drive that contradict each other, with the lines of `[data.map]` that would correct them:
+/// for the user to decide.
+std::string corrections(const recording::MappedRecording& drive) {
+  const recording::DriveMotion motion = recording::drive_motion(drive.recording);
+  const recording::Consistency found = recording::check_consistency(motion);
+  std::string lines;
+  for (const std::vector<recording::ChannelFault>& explanation : found.explanations) {
+    for (const recording::ChannelFault& fault : explanation) {
+      lines += fmt::format("# {}: {}\n", found.is_sure() ? "wrong" : "may be", fault.says(motion.names));
+      for (const std::string& line : recording::correction_of(fault, motion.names, drive.origins))
+        lines += fmt::format("#   {}\n", line);
+    }
+  }
+  return lines.empty() ? lines : "# `veridyn inspect` has the figures of what follows.\n" + lines;
+}
+
 /// The part of a study about a recorded drive.
 std::string drive_section(const Arguments& arguments, const char* text) {
-  const LogSections log =
-      log_sections(arguments, vehicle::standard_drive_channels(), vehicle::drive_channel_aliases(),
-                   [](const Recording& r) { return vehicle::map_drive_channels(r, StudyTable("data.map")); });
+  std::string contradictions;
+  const LogSections log = log_sections(arguments, vehicle::standard_drive_channels(), vehicle::drive_channel_aliases(),
+                                       [&contradictions](const Recording& r) {
+                                         recording::MappedRecording drive =
+                                             vehicle::map_drive_channels(r, StudyTable("data.map"));
+                                         contradictions = corrections(drive);
+                                         return drive;
+                                       });
   const std::string data = filled(text, "@LOG@", quoted_argument(arguments, "--log"));
-  return filled(filled(data, "@READ@", log.read), "@MAP@", log.map);
+  return filled(filled(data, "@READ@", log.read), "@MAP@", log.map + contradictions);
 }
 
 int init_vehicle(const Arguments& arguments) {

@@ -1,4 +1,8 @@
 // veridyn init: a study, whole or not at all.
+#include <fmt/format.h>
+
+#include <cmath>
+
 #include "tests/apps/program.hpp"
 
 namespace veridyn {
@@ -54,6 +58,21 @@ TEST_F(Init, SaysWhereItRecognisesNothing) {
   const Outcome made = run("init aircraft --log " + log + " --out " + (folder_ / "out").string());
   EXPECT_EQ(made.exit_code, 0);
   EXPECT_THAT(made.text, HasSubstr("odd.csv: no channel is known by its name; `veridyn inspect"));
+}
+
+TEST_F(Init, SaysWhichChannelContradictsTheOthers) {
+  // Speed in km/h under the name of m/s; steady turns of a wheelbase of 2.6 m.
+  std::string log = "time[s],steer[rad],speed[m/s],yaw_rate[rad/s],accel_y[m/s^2]\n";
+  for (int k = 0; k < 6000; ++k) {
+    const double t = 0.01 * k, v = 20.0, steer = 0.02 * std::sin(0.8 * t), r = v * steer / 2.6;
+    log += fmt::format("{},{},{},{},{}\n", t, steer, 3.6 * v, r, v * r);
+  }
+  const Outcome made = run("init vehicle --log " + file("drive.csv", log) + out());
+  ASSERT_EQ(made.exit_code, 0) << made.text;
+  const std::string study = read_file(in_out("study.toml"));
+  EXPECT_THAT(study, HasSubstr("speed"));
+  EXPECT_THAT(study, HasSubstr("km/h"));
+  EXPECT_THAT(study, HasSubstr("`veridyn inspect` has the figures"));
 }
 
 TEST_F(Init, KeepsTheStudyThatItCannotReplace) {
