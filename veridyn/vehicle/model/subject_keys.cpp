@@ -38,7 +38,7 @@ StudyKeys tyre_keys() {
     if constexpr (requires { Tyre::study_keys(); })
       for (const auto& key : Tyre::study_keys())
         tyres.keys.push_back(
-            {std::string(key.name), "", "", internal::shown(Tyre{}.*key.value, "1"),
+            {std::string(key.name), "", "", veridyn::internal::shown(Tyre{}.*key.value, "1"),
              fmt::format("of `tyre = \"{}\"`{}{}", Tyre::kStudyName, key.meaning.empty() ? "" : ": ", key.meaning)});
   });
   return tyres;
