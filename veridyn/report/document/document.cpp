@@ -154,6 +154,7 @@ Cell measured_cell(double value, double sigma) {
 }
 
 void check(const Document& document) {
+  for (const Block& block : document.lead) std::visit([](const auto& each) { check_block(each); }, block);
   for (const Section& section : document.sections) {
     for (const Block& block : section.blocks) std::visit([](const auto& each) { check_block(each); }, block);
   }
