@@ -136,8 +136,8 @@ TEST(EvidenceSection, HasWhatFailedFirstAndEachSentenceOnce) {
     ASSERT_EQ(table.rows.size(), 1U);
     EXPECT_EQ(table.rows[0].cells.size(), table.columns.size());
   }
-  EXPECT_EQ(tables[0].rows[0].cells[5].text, "see the top of this page");
-  EXPECT_THAT(tables[4].rows[0].cells[5].text, testing::HasSubstr("gps"));
+  EXPECT_EQ(tables[0].rows[0].cells[4].text, "see the top of this page");
+  EXPECT_THAT(tables[4].rows[0].cells[4].text, testing::HasSubstr("gps"));
 }
 
 TEST(PredictionTable, HasARowForEachQuantity) {

@@ -24,7 +24,7 @@ namespace veridyn::report {
 /// A row of these columns without the truth. @param factor from the estimate's unit to `unit`
 [[nodiscard]] Row parameter_row(const estimation::Parameter& parameter, double factor, std::string unit);
 
-/// The columns of a check: "of, check, value, limit, unit, what was seen, bears on".
+/// The columns of a check: "check, value, limit, unit, what was seen, bears on".
 [[nodiscard]] std::vector<Column> evidence_columns();
 
 /// A row of these columns: value with its standard error, and the limit, in the unit that people read ("at most 5 deg").
