@@ -35,8 +35,8 @@ TEST(EvidenceRow, ShowsValueAndLimitInTheUnitAndSenseOfTheReader) {
     return texts;
   };
   EXPECT_THAT(shown(estimation::row_of(Check::kPlausibleUndersteer, "understeer_gradient", 0.02, 0.001)),
-              testing::ElementsAre("understeer_gradient: plausibility of understeer_gradient", "1.15 ± 0.057",
-                                   "-2.865\u00a0to\u00a011.46", "deg/g", "the understeer is 1.1 deg/g", "parameters"));
+              testing::ElementsAre("plausibility of understeer_gradient", "1.15 ± 0.057", "-2.865\u00a0to\u00a011.46",
+                                   "deg/g", "the understeer is 1.1 deg/g", "parameters"));
   const std::vector<std::string> clipped =
       shown(estimation::row_of(Check::kClippedSamples, "gyro", 0.2).with("channel", std::string("gyro")), true);
   EXPECT_THAT(clipped[2], testing::StartsWith("at\u00a0most\u00a0"));

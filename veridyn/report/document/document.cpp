@@ -160,6 +160,18 @@ void check(const Document& document) {
   }
 }
 
+Document with_captions_once(Document document) {
+  std::set<std::string> said;
+  const auto once = [&said](auto& block) {
+    if constexpr (requires { block.caption; })
+      if (!block.caption.empty() && !said.insert(block.caption).second) block.caption.clear();
+  };
+  for (Block& block : document.lead) std::visit(once, block);
+  for (Section& section : document.sections)
+    for (Block& block : section.blocks) std::visit(once, block);
+  return document;
+}
+
 std::vector<std::string> section_ids(const Document& document) {
   // Names of elements that the page has already.
   std::set<std::string> taken = {"report", "veridyn-document", "theme", "reset-zoom", "expand-all"};

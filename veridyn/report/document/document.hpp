@@ -386,6 +386,9 @@ struct Document {
 /// A violation is a programming error: asserts, naming the block.
 void check(const Document& document);
 
+/// The document with every caption at the first block that has it alone: what explains ten plots alike is said once.
+[[nodiscard]] Document with_captions_once(Document document);
+
 /// The sections' link targets: lower-case letters, digits and dashes, all different.
 [[nodiscard]] std::vector<std::string> section_ids(const Document& document);
 
