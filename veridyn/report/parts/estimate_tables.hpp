@@ -27,7 +27,8 @@ namespace veridyn::report {
 /// The columns of a check: "check, value, limit, unit, what was seen, bears on".
 [[nodiscard]] std::vector<Column> evidence_columns();
 
-/// A row of these columns: value with its standard error, and the limit, in the unit that people read ("at most 5 deg").
+/// A row of these columns: value with its standard error, and the limit, in the unit that people read ("at most 5
+/// deg").
 /// @param said  whether its sentence stands on the first screen, which is not repeated
 [[nodiscard]] Row evidence_row(const estimation::Evidence& row, bool said);
 
