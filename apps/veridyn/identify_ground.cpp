@@ -11,7 +11,6 @@
 #include "apps/veridyn/run/version.hpp"
 #include "veridyn/aircraft/sensors/air_data_calibration.hpp"
 #include "veridyn/aircraft/sensors/swing_test.hpp"
-#include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/report/ground_report.hpp"
 
@@ -20,7 +19,7 @@ namespace {
 
 /// What every one of these writes, whatever it identified.
 struct GroundResult {
-  estimation::Estimate estimate;
+  estimation::Analysis analysis;
   report::Document document;
   std::vector<std::pair<std::string, std::string>> files;  ///< name and content
   std::vector<std::string> lines;                          ///< for people
@@ -31,13 +30,8 @@ struct GroundResult {
 void publish(const StudyRun& run, OutputFolder& folder, const GroundResult& result) {
   folder.write("report.html", report::to_html(result.document));
   for (const auto& [name, content] : result.files) folder.write(name, content);
-  folder.write("parameters.csv", parameters_csv(result.estimate));
-  folder.write("estimate.json", io::to_json(result.estimate));
-  folder.publish(run.record(result.seed, result.inputs), run.options(),
-                 estimate_summary(folder.path(), result.estimate));
-  for (const std::string& line : result.lines) print_line(run.options(), line);
-  for (const std::string& warning : result.estimate.warnings) print_line(run.options(), "warning: " + warning);
-  print_line(run.options(), fmt::format("report: {}", (folder.path() / "report.html").string()));
+  publish_analysis(folder, run.record(result.seed, result.inputs), run.options(), result.analysis,
+                   {.lines = result.lines});
 }
 
 std::uint64_t seed_of(const Study& study) {
@@ -52,7 +46,7 @@ GroundResult swing_test(const Study& study, Progress& progress) {
   const aircraft::SwingTestResult analysis = aircraft::analyse_swing_test(test, progress);
   GroundResult result;
   result.seed = test.seed;
-  result.estimate = analysis.estimate;
+  result.analysis.estimate = analysis.estimate;
   result.document = report::swing_test_report(test, analysis, program_name());
   result.files.emplace_back("subject.toml", aircraft::inertia_toml(test, analysis));
   for (const aircraft::AxisInertia& i : analysis.axes) {
@@ -71,7 +65,7 @@ GroundResult calibration(const Study& study, Progress& progress) {
   study.root().finish();
   progress.stage("fitting the calibration");
   const aircraft::CalibrationResult analysis = aircraft::calibrate(points);
-  result.estimate = analysis.estimate;
+  result.analysis.estimate = analysis.estimate;
   result.document = report::calibration_report(points, analysis, program_name());
   std::vector<aircraft::SensorCalibration> sensors;
   for (const aircraft::SensorFit& fit : analysis.sensors) {

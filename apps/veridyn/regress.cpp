@@ -14,7 +14,6 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/estimation/regression/regression_judgement.hpp"
-#include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/io/tables/number_table.hpp"
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/report/regression_report.hpp"
@@ -144,12 +143,6 @@ std::string rows_csv(const JudgedRegression& result) {
   return text;
 }
 
-Summary summary_of(const JudgedRegression& result, const std::filesystem::path& folder) {
-  Summary summary = estimate_summary(folder, result.estimate, result.groups);
-  summary["condition_number"] = result.chosen ? result.chosen->condition_number : kNaN;
-  return summary;
-}
-
 int regress(const Arguments& arguments) {
   const std::string& file = arguments.text("TABLE");
   const CommonOptions& options = arguments.common;
@@ -159,20 +152,13 @@ int regress(const Arguments& arguments) {
   TerminalProgress progress = progress_of(options);
   const JudgedRegression result = judged_regression(std::move(data), regression_options(arguments), progress);
   if (result.interrupted) throw Interrupted();
-  folder.write("estimate.json", io::to_json(result.estimate));
-  folder.write("parameters.csv", parameters_csv(result.estimate));
-  folder.write("methods.csv", methods_csv(result));
   folder.write("rows.csv", rows_csv(result));
   folder.write("report.html", report::to_html(report::regression_report(result, file, program_name())));
-  folder.publish(
+  const double condition_number = result.chosen ? result.chosen->condition_number : kNaN;
+  publish_analysis(
+      folder,
       {.command = "regress", .study_name = file, .study_toml = {}, .seed = options.seed.value_or(1), .inputs = {file}},
-      options, summary_of(result, folder.path()));
-  print_line(options, result.estimate.verdict);
-  print_judgement(options, result.estimate);
-  for (const Parameter& p : result.estimate.parameters)
-    print_line(options, fmt::format("  {:<24} {:>14.6g} +- {:<12.4g} [{:.6g}, {:.6g}]  {}", p.name, p.value, p.sigma,
-                                    p.low95, p.high95, to_string(p.status)));
-  print_line(options, fmt::format("report: {}", (folder.path() / "report.html").string()));
+      options, result, {.summary = {{"condition_number", condition_number}}});
   return kDone;
 }
 

@@ -15,7 +15,6 @@
 #include "apps/veridyn/run/work_progress.hpp"
 #include "veridyn/aircraft/track_flight.hpp"
 #include "veridyn/core/index.hpp"
-#include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/report/tracking_report.hpp"
@@ -76,50 +75,44 @@ class LiveView {
 };
 
 /// What the guarded filter did, where there is one: files, summary and console.
-void publish_filter(const StudyRun& run, OutputFolder& folder, const FlightStudy& study, const FilterHistory& filter,
-                    Summary& summary) {
+void add_filter(OutputFolder& folder, const FlightStudy& study, const FilterHistory& filter, MoreResults& more) {
+  if (filter.empty()) return;
   folder.write("filter.csv", io::to_csv(filter.recording()));
   folder.write("models.csv", models_csv(filter.models()));
-  Summary& entry = summary["filter"];
+  Summary& entry = more.summary.emplace_back("filter", Summary()).second;
   entry["model_based_share"] = filter.model_based_share();
   entry["reverts"] = filter.reverts();
   entry["models"] = filter.models().size();
-  print_line(run.options(), filter.statement());
+  more.lines.push_back(filter.statement());
   if (!study.truth) return;
   for (const TrackedFilterError& e : filter.errors(*study.truth)) {
     entry["rms_error"][e.quantity] = Summary::object({{"model_free", e.model_free}, {"guarded", e.guarded}});
     const auto text = [&](double v) { return fmt::format("{:.3g}{}", display_value(v, e.unit), display_unit(e.unit)); };
-    print_line(run.options(), fmt::format("  {:<9} RMS error: model-free {}, guarded {}", e.quantity,
-                                          text(e.model_free), text(e.guarded)));
+    more.lines.push_back(
+        fmt::format("  {:<9} RMS error: model-free {}, guarded {}", e.quantity, text(e.model_free), text(e.guarded)));
   }
 }
 
 void publish_tracking(const StudyRun& run, OutputFolder& folder, const FlightStudy& study,
                       const TrackedFlight& flight) {
   const FlightTracker& tracker = flight.tracker();
-  const estimation::Estimate estimate = flight.estimate();
   std::string changes = "coefficient,kind,detected[s],began[s],shift\n";
-  Summary summary = estimate_summary(folder.path(), estimate);
-  summary["rows"] = tracker.rows();
-  summary["changes"] = Summary::array();
+  Summary found = Summary::array();
   for (const FlightChange& c : tracker.changes()) {
     const std::string_view name = name_of(c.coefficient);
     changes += fmt::format("{},{},{},{},{}\n", name, estimation::kChangeKindNames[c.change.kind], c.change.detected_s,
                            c.change.began_s, c.change.shift);
-    summary["changes"].push_back(Summary::object({{"coefficient", name}, {"detected_s", c.change.detected_s}}));
+    found.push_back(Summary::object({{"coefficient", name}, {"detected_s", c.change.detected_s}}));
   }
   folder.write("track.csv", io::to_csv(history_recording(tracker)));
   folder.write("changes.csv", changes);
-  folder.write("estimate.json", io::to_json(estimate));
   folder.write("report.html", report::to_html(report::tracking_report(study, flight, program_name())));
-  if (!flight.filter().empty()) publish_filter(run, folder, study, flight.filter(), summary);
+  MoreResults more{.summary = {{"rows", tracker.rows()}, {"changes", std::move(found)}},
+                   .lines = {fmt::format("changes found: {}", tracker.changes().size())}};
+  add_filter(folder, study, flight.filter(), more);
   RunRecord record = run.record(study.seed, study.inputs);
   if (!study.track.estimate_file.empty()) record.inputs.push_back(study.track.estimate_file);
-  folder.publish(record, run.options(), summary);
-  print_line(run.options(), estimate.verdict);
-  print_judgement(run.options(), estimate);
-  print_line(run.options(), fmt::format("changes found: {}; report: {}", tracker.changes().size(),
-                                        (folder.path() / "report.html").string()));
+  publish_analysis(folder, record, run.options(), {.estimate = flight.estimate()}, more);
 }
 
 void replay(const StudyRun& run, OutputFolder& folder) {

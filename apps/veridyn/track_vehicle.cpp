@@ -10,7 +10,6 @@
 #include "apps/veridyn/run/console.hpp"
 #include "apps/veridyn/run/version.hpp"
 #include "apps/veridyn/run/work_progress.hpp"
-#include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/report/drive_report.hpp"
@@ -38,12 +37,9 @@ std::string live_line(const TrackedDrive& drive) {
 
 void publish_tracking(const StudyRun& run, OutputFolder& folder, const PreparedDrive& drive,
                       const TrackedDrive& tracked) {
-  const estimation::Estimate estimate = tracked.estimate();
-  folder.write("estimate.json", io::to_json(estimate));
   std::string changes = "what,kind,detected[s],began[s],shift\n";
   std::size_t count = 0;
-  Summary summary = estimate_summary(folder.path(), estimate);
-  summary["changes"] = Summary::array();
+  Summary found = Summary::array();
   if (const DriveTracker* tracker = tracked.tracker()) {
     folder.write("track.csv", io::to_csv(history_recording(*tracker)));
     count = tracker->changes().size();
@@ -51,18 +47,15 @@ void publish_tracking(const StudyRun& run, OutputFolder& folder, const PreparedD
       const std::string_view name = kTrackedAxleNames[c.axle];
       changes += fmt::format("{},{},{},{},{}\n", name, estimation::kChangeKindNames[c.change.kind], c.change.detected_s,
                              c.change.began_s, c.change.shift);
-      summary["changes"].push_back(Summary::object({{"what", name}, {"detected_s", c.change.detected_s}}));
+      found.push_back(Summary::object({{"what", name}, {"detected_s", c.change.detected_s}}));
     }
   }
   folder.write("changes.csv", changes);
   const report::DriveReportContext context{.program = program_name()};
   folder.write("report.html", report::to_html(report::drive_tracking_report(drive.study, tracked, context)));
-  folder.publish(run.record(drive.study.seed, drive.study.inputs), run.options(), summary);
-  for (const std::string& warning : estimate.warnings) print_line(run.options(), "warning: " + warning);
-  print_line(run.options(), estimate.verdict);
-  print_judgement(run.options(), estimate);
-  print_line(run.options(),
-             fmt::format("changes found: {}; report: {}", count, (folder.path() / "report.html").string()));
+  publish_analysis(folder, run.record(drive.study.seed, drive.study.inputs), run.options(),
+                   {.estimate = tracked.estimate()},
+                   {.summary = {{"changes", std::move(found)}}, .lines = {fmt::format("changes found: {}", count)}});
 }
 
 void follow_drive(const StudyRun& run, OutputFolder& folder) {

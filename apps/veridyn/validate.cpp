@@ -10,37 +10,34 @@ namespace veridyn::app {
 
 int validate_aircraft(const StudyRun& run) {
   OutputFolder folder(run.options().out);
-  const std::string& file = run.arguments.text("--estimate-file");
-  const estimation::Estimate estimate = io::read_estimate(file);
+  const estimation::Estimate estimate = io::read_estimate(run.arguments.text("--estimate-file"));
   TerminalProgress progress = progress_of(run.options());
   const std::vector<aircraft::FlightStudy> flights = aircraft::read_flights(run.study, progress);
   const aircraft::FlightAnalysis analysis = aircraft::validate(flights, estimate, progress);
   if (analysis.interrupted) throw Interrupted();
-  publish_identification(run, folder, flights, analysis, {file});
+  publish_identification(run, folder, flights, analysis);
   return kDone;
 }
 
 int validate_vehicle(const StudyRun& run) {
   OutputFolder folder(run.options().out);
-  const std::string& file = run.arguments.text("--estimate-file");
-  const estimation::Estimate estimate = io::read_estimate(file);
+  const estimation::Estimate estimate = io::read_estimate(run.arguments.text("--estimate-file"));
   TerminalProgress progress = progress_of(run.options());
   PreparedDrive drive = prepare_drive(run.study, progress);
   const vehicle::VehicleAnalysis analysis = vehicle::validate(drive.study, estimate, progress);
   if (analysis.interrupted) throw Interrupted();
-  publish_drive(run, folder, drive, analysis, {file});
+  publish_drive(run, folder, drive, analysis);
   return kDone;
 }
 
 int validate_muscles(const StudyRun& run) {
   OutputFolder folder(run.options().out);
-  const std::string& file = run.arguments.text("--estimate-file");
-  const estimation::Estimate estimate = io::read_estimate(file);
+  const estimation::Estimate estimate = io::read_estimate(run.arguments.text("--estimate-file"));
   TerminalProgress progress = progress_of(run.options());
   const muscle::TaskStudy study = muscle::read_task_study(run.study, progress);
   const muscle::MuscleAnalysis analysis = muscle::validate(study, estimate, progress);
   if (analysis.interrupted) throw Interrupted();
-  publish_muscles(run, folder, study, analysis, {file});
+  publish_muscles(run, folder, study, analysis);
   return kDone;
 }
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -76,8 +77,8 @@ TEST(IdentificationReport, SaysWhatThePilotMayUseAndWhatTheFlightDoesNotExcite) 
   EXPECT_EQ(document.subtitle, "Identified from flight");
   EXPECT_EQ(document.generator, "Made with veridyn test");
   ASSERT_EQ(f.analysis.coefficients.size(), 2U);
-  EXPECT_THAT(document.verdict.lines, Contains("Identified: pitching moment (Cm)"));
-  EXPECT_THAT(document.verdict.lines, Contains("Not excited by this flight: side force (CY)"));
+  EXPECT_EQ(test::fact_of(document.facts, "Identified"), "pitching moment (Cm)");
+  EXPECT_EQ(test::fact_of(document.facts, "Not excited by this flight"), "side force (CY)");
   EXPECT_EQ(test::fact_of(document.facts, "Recording"), "simulated from the study");
   EXPECT_THAT(test::fact_of(document.facts, "Excited"), HasSubstr("0 s lateral"));
   EXPECT_THAT(test::fact_of(document.facts, "Mass"), HasSubstr(" kg"));
@@ -132,10 +133,43 @@ TEST(IdentificationReport, SortsCoefficientsByWhatBecameOfThem) {
   analysis.coefficients.back().verdict = estimation::GroupVerdict::kRejected;
   const Document document = identification_report({}, analysis, {.program = "veridyn test"});
   check(document);
-  ASSERT_GE(document.verdict.lines.size(), 3U);
-  EXPECT_EQ(document.verdict.lines[0], "Identified: pitching moment (Cm)");
-  EXPECT_EQ(document.verdict.lines[1], "Rejected: yawing moment (Cn)");
-  EXPECT_EQ(document.verdict.lines[2], "Not attempted: drag (CD)");
+  EXPECT_EQ(test::fact_of(document.facts, "Identified"), "pitching moment (Cm)");
+  EXPECT_EQ(test::fact_of(document.facts, "Rejected"), "yawing moment (Cn)");
+  EXPECT_EQ(test::fact_of(document.facts, "Not attempted"), "drag (CD)");
+}
+
+TEST(IdentificationReport, BeginsWithTheHoldOutOfWhatPredicts) {
+  AnalysedFlight f{.study = short_flight(), .analysis = identified_flight().analysis};
+  const auto lead_of = [&] {
+    return test::blocks_of<TimeSeries>(identification_report(f.study, f.analysis, {.program = "veridyn test"}).lead);
+  };
+  const std::vector<TimeSeries> identified = lead_of();
+  ASSERT_FALSE(identified.empty());
+  const Panel& pitch = identified.front().panels.front();
+  EXPECT_EQ(pitch.label, "Cm");
+  ASSERT_EQ(pitch.lines.size(), 2U);
+  const TimeSpan held_out = f.analysis.flights.front().segments.longitudinal.holdout.front();
+  EXPECT_EQ(identified.front().windows.front().from, held_out.begin);
+  EXPECT_GE(pitch.lines.front().x.front(), held_out.begin) << "what is not shown is not stored";
+  const auto cm = std::ranges::find(f.analysis.coefficients, "Cm", &aircraft::CoefficientResult::name);
+  cm->verdict = estimation::GroupVerdict::kEffective;
+  EXPECT_EQ(lead_of().front().panels.front().label, "Cm (effective)");
+  EXPECT_EQ(lead_of().front().panels.front().lines.size(), 2U);
+  cm->verdict = estimation::GroupVerdict::kRejected;
+  EXPECT_EQ(lead_of().front().panels.front().lines.size(), 1U) << "a rejected model is not shown";
+}
+
+TEST(IdentificationReport, ShowsTheFlightFromTakeOffToLanding) {
+  AnalysedFlight f{.study = short_flight(), .analysis = identified_flight().analysis};
+  std::vector<TimeSpan>& airborne = f.analysis.flights.front().segments.airborne;
+  ASSERT_EQ(airborne.size(), 1U);
+  airborne.front().begin += 10.0;
+  const double margin = 0.03 * (airborne.front().end - airborne.front().begin);
+  const Document document = identification_report(f.study, f.analysis, {.program = "veridyn test"});
+  for (const TimeSeries& figure : test::blocks_of<TimeSeries>(test::section_of(document, "The flight").blocks)) {
+    for (const Panel& panel : figure.panels)
+      for (const Line& line : panel.lines) EXPECT_NEAR(line.x.front(), airborne.front().begin - margin, 0.3);
+  }
 }
 
 // Where two sensors contradict each other there is no motion to show.

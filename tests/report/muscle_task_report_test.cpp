@@ -76,7 +76,10 @@ Document report_of(const TaskStudy& study, const MuscleAnalysis& a) {
 TEST(MuscleTaskReport, ShowsEachParameterWithWhatTheTasksSayOfIt) {
   const Document document = report_of(study_of_a_person(), analysis_by_hand());
   EXPECT_EQ(document.title, "a person");
-  EXPECT_EQ(document.verdict.lines.front(), "one of two is identified");
+  EXPECT_EQ(test::fact_of(document.facts, "Estimated"), "one of two is identified");
+  const std::vector<TimeSeries> lead = test::blocks_of<TimeSeries>(document.lead);
+  ASSERT_EQ(lead.size(), 1U) << "of the task that was held out";
+  EXPECT_EQ(lead.front().title, "wave (unseen)");
   EXPECT_EQ(test::fact_of(document.facts, "Recording"), "a simulated person");
   EXPECT_EQ(test::fact_of(document.facts, "Held out"), "1 tasks");
   const Table table = test::table_of(test::section_of(document, "Parameters").blocks, "Parameters");
@@ -117,12 +120,27 @@ TEST(MuscleTaskReport, ShowsEachTaskBeforeAndAfter) {
   EXPECT_THAT(test::shown_row(table, 0), ElementsAre("curl", "trained", "5.00", "1.00", "0.100", "0.0200", "3.0"));
   EXPECT_EQ(test::shown_in(table, table.rows[1], "after", "NRMSE"), "-") << "the simulation could not finish";
   EXPECT_EQ(table.rows[1].status, Status::kBad);
+  const std::vector<TimeSeries> unseen = test::blocks_of<TimeSeries>(document.lead);
+  ASSERT_EQ(unseen.size(), 1U);
+  EXPECT_THAT(test::lines_of(unseen[0].panels[0]), ElementsAre("measured", "standard model"));
   const std::vector<TimeSeries> figures = test::blocks_of<TimeSeries>(section.blocks);
-  ASSERT_EQ(figures.size(), 2U);
-  EXPECT_EQ(figures[0].title, "Unseen tasks");
-  EXPECT_THAT(test::lines_of(figures[0].panels[0]), ElementsAre("measured", "standard model"));
-  EXPECT_THAT(test::lines_of(figures[1].panels[0]), ElementsAre("measured", "standard model", "estimate"));
-  EXPECT_NEAR(figures[1].panels[0].lines[0].y.back(), 180.0, 1e-9) << "deg";
+  ASSERT_EQ(figures.size(), 1U) << "the unseen one is on the first screen";
+  EXPECT_EQ(figures[0].title, "Tasks that the estimate is from");
+  EXPECT_THAT(test::lines_of(figures[0].panels[0]), ElementsAre("measured", "standard model", "estimate"));
+  EXPECT_NEAR(figures[0].panels[0].lines[0].y.back(), 180.0, 1e-9) << "deg";
+}
+
+TEST(MuscleTaskReport, BeginsWithTheUnseenTasksThatArePredictedWorst) {
+  MuscleAnalysis a = analysis_by_hand();
+  for (int k = 0; k < 6; ++k) {
+    a.tasks.push_back(a.tasks[1]);
+    a.tasks.back().name = std::string("task ") + static_cast<char>('a' + k);
+    a.tasks.back().after.nrmse = k == 2 ? kNaN : 0.1 * k;
+  }
+  const std::vector<TimeSeries> lead = test::blocks_of<TimeSeries>(report_of(study_of_a_person(), a).lead);
+  std::vector<std::string> titles;
+  for (const TimeSeries& figure : lead) titles.push_back(figure.title);
+  EXPECT_THAT(titles, ElementsAre("task c (unseen)", "task f (unseen)", "task e (unseen)", "task d (unseen)"));
 }
 
 TEST(MuscleTaskReport, ShowsNoMorePanelsThanOneCanSee) {

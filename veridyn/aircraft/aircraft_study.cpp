@@ -184,7 +184,8 @@ std::vector<std::string> warnings_of(std::span<const FlightStudy> studies, const
         "coupling of a flat body (Jz = Jx + Jy, Jx = Jy, Jxz = 0) and the moments of the thrust left in");
   }
   for (const CoefficientResult& result : analysis.coefficients) {
-    if (result.verdict != estimation::GroupVerdict::kIdentified) warnings.push_back(result.reason);
+    if (!estimation::usable(result.verdict) && result.verdict != estimation::GroupVerdict::kRejected)
+      warnings.push_back(result.reason);
   }
   return warnings;
 }

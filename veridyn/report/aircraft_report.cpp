@@ -11,6 +11,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/report/figures/aircraft_figures.hpp"
 #include "veridyn/report/figures/curves.hpp"
+#include "veridyn/report/figures/time_range.hpp"
 #include "veridyn/report/parts/aircraft_estimates.hpp"
 #include "veridyn/report/parts/aircraft_evidence.hpp"
 #include "veridyn/report/parts/aircraft_flights.hpp"
@@ -32,10 +33,9 @@ std::vector<std::string> meanings(std::span<const CoefficientResult> results, es
   return names;
 }
 
-/// The grades, then the coefficients by what became of them.
-Verdict top_of(const FlightAnalysis& analysis) {
-  Verdict verdict = verdict_of(analysis.estimate);
-  std::vector<std::string> lines;
+/// The coefficients by what became of them.
+std::vector<Fact> outcomes_of(const FlightAnalysis& analysis) {
+  std::vector<Fact> facts;
   using estimation::GroupVerdict;
   for (const auto& [group, word] :
        {std::pair{GroupVerdict::kIdentified, "Identified"}, std::pair{GroupVerdict::kEffective, "Predicts only"},
@@ -43,10 +43,9 @@ Verdict top_of(const FlightAnalysis& analysis) {
         std::pair{GroupVerdict::kNotExcited, "Not excited by this flight"},
         std::pair{GroupVerdict::kSkipped, "Not attempted"}}) {
     const std::vector<std::string> names = meanings(analysis.coefficients, group);
-    if (!names.empty()) lines.push_back(fmt::format("{}: {}", word, fmt::join(names, ", ")));
+    if (!names.empty()) facts.push_back({word, fmt::format("{}", fmt::join(names, ", "))});
   }
-  verdict.lines.insert(verdict.lines.begin(), lines.begin(), lines.end());
-  return verdict;
+  return facts;
 }
 
 /// "flight1.csv, flight2.csv", or where the only flight is from.
@@ -141,22 +140,26 @@ Document identification_report(const FlightStudy& study, const FlightAnalysis& a
                                            : "A given estimate tried on this flight")
             : (analysis.flights.size() > 1 ? "Identified from several flights" : "Identified from flight"),
       context.program);
-  document.verdict = top_of(analysis);
-  document.facts = facts_of(study, analysis);
+  document.verdict = verdict_of(analysis.estimate);
+  for (TimeSeries& figure : coefficient_lead(analysis, given)) document.lead.emplace_back(std::move(figure));
+  document.facts = outcomes_of(analysis);
+  for (Fact& fact : facts_of(study, analysis)) document.facts.push_back(std::move(fact));
   const auto add = [&](Section section, bool shown = true) {
     if (shown && !section.blocks.empty()) document.sections.push_back(std::move(section));
   };
   const bool several = analysis.flights.size() > 1;
   const bool motion = std::ranges::any_of(analysis.flights, &PreparedFlight::usable);
-  /// With the name of the recording in its title.
+  /// From take-off to landing; of several with the name of the recording in its title, and on its own clock.
   const auto of = [&](Section section, std::size_t flight) {
+    if (const std::optional<Window> range = flown_range(analysis.flights[flight]))
+      show_range(section, *range, several ? fmt::format("time_{}", flight + 1) : "time");
     if (!several) return section;
     section.title = fmt::format("{}: {}", section.title, analysis.flights[flight].name);
     section.id = fmt::format("{}_{}", section.id, flight + 1);
     return section;
   };
-  add(coefficients_section(analysis));
   add(parameters_section(analysis, ""), !given);
+  add(coefficients_section(analysis));
   add(evidence_section(analysis.estimate));
   add(methods_section(analysis), !given);
   add(other_estimators_section(analysis));
@@ -211,6 +214,8 @@ Document reconstruction_report(const FlightStudy& study, const FlightAnalysis& a
           : fmt::format("The sensors of this flight do not determine {}: mind the bands.", fmt::join(weak, ", "));
   document.sections.push_back(flight_section(study, flight));
   document.sections.push_back(sensors_section(flight));
+  if (const std::optional<Window> range = flown_range(flight))
+    for (Section& section : document.sections) show_range(section, *range, "time");
   add_warnings(document, flight.reconstruction.warnings);
   return document;
 }

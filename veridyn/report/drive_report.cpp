@@ -11,6 +11,7 @@
 #include "veridyn/numerics/statistics.hpp"
 #include "veridyn/report/document/number_format.hpp"
 #include "veridyn/report/figures/curves.hpp"
+#include "veridyn/report/figures/time_range.hpp"
 #include "veridyn/report/parts/analysis_sections.hpp"
 #include "veridyn/report/parts/drive_path_section.hpp"
 #include "veridyn/report/parts/open_loop_section.hpp"
@@ -87,12 +88,15 @@ struct Stretches {
   }
 };
 
+/// Most stretches of a drive on the first screen.
+constexpr std::size_t kLeadStretches = 6;
+
 /// The drives of a prediction side by side, each with its own time.
 TimeSeries prediction_figure(const DriveValidation& v, const std::string& title) {
   TimeSeries figure{.title = title,
                     .caption =
-                        "Simulated from measured steering and speed; only the lateral velocity and yaw rate at the "
-                        "beginning of each stretch were fitted. Bands are 95 %, from the parameters alone."};
+                        "Simulated from measured steering and speed, with lateral velocity and yaw rate fitted "
+                        "where each stretch begins. Bands are 95 %, from the parameters alone."};
   const std::vector<double> none;
   Stretches steer, yaw_rate, acceleration, lateral;
   for (const PredictedStretch& d : v.stretches) {
@@ -107,10 +111,10 @@ TimeSeries prediction_figure(const DriveValidation& v, const std::string& title)
     Panel panel{.label = label, .unit = unit, .lines = stretches.lines(), .height = height};
     if (!panel.lines.empty()) figure.panels.push_back(std::move(panel));
   };
-  add("steer angle", "deg", steer, 90);
-  add("yaw rate", "deg/s", yaw_rate, 150);
-  add("lateral acceleration", "m/s^2", acceleration, 150);
-  add("lateral velocity", "m/s", lateral, 150);
+  add("yaw rate", "deg/s", yaw_rate, 110);
+  add("lateral acceleration", "m/s^2", acceleration, 110);
+  add("lateral velocity", "m/s", lateral, 110);
+  add("steer angle", "deg", steer, 60);
   return figure;
 }
 
@@ -212,6 +216,12 @@ TimeSeries signal_figure(const VehicleAnalysis& a) {
          .lines = {{.name = "measured", .y = scaled(a.signals[signal].value, factor), .role = Role::kMeasured}},
          .height = 100});
   }
+  if (!a.segments.usable.empty()) {
+    const double begin = a.segments.usable.front().begin, end = a.segments.usable.back().end;
+    const double margin = std::max(2.0, 0.03 * (end - begin));
+    const Window driven{begin - margin, end + margin};
+    keep_within(figure, std::span(&driven, 1));
+  }
   for (const TimeSpan& s : a.segments.identification)
     figure.spans.push_back({.from = s.begin, .to = s.end, .label = "identification", .tone = SpanTone::kPrimary});
   for (const TimeSpan& s : a.segments.holdout)
@@ -235,7 +245,10 @@ Table origin_table(const VehicleStudy& study) {
 Section validation_section(const DriveValidation& validation) {
   Section section{.title = "Validation on held-out data"};
   section.blocks.emplace_back(prediction_table(validation.quantities, "Prediction of the hold-out"));
-  section.blocks.emplace_back(prediction_figure(validation, "Measured and predicted, hold-out"));
+  // Fewer are all on the first screen.
+  if (TimeSeries all = prediction_figure(validation, "All stretches that were held out");
+      all.windows.size() > kLeadStretches)
+    section.blocks.emplace_back(std::move(all));
   XYPlot path = path_plot(validation);
   if (!path.series.empty()) section.blocks.emplace_back(std::move(path));
   return section;
@@ -287,6 +300,11 @@ Document drive_report(const VehicleStudy& study, const VehicleAnalysis& analysis
       study.name, context.validation_only ? "An estimate validated on a held-out drive" : study.subject_name,
       context.program);
   document.verdict = verdict(analysis);
+  const bool held_out = !id.validation.stretches.empty();
+  TimeSeries lead = held_out
+                        ? prediction_figure(id.validation, "Measured and model on held-out data")
+                        : prediction_figure(id.fit, "Nothing was held out: measured and model where it was fitted");
+  if (!lead.windows.empty()) document.lead.emplace_back(in_longest_windows(std::move(lead), kLeadStretches));
   document.facts = facts(study, analysis);
   const auto add = [&](Section section) {
     if (!section.blocks.empty()) document.sections.push_back(std::move(section));
@@ -299,7 +317,7 @@ Document drive_report(const VehicleStudy& study, const VehicleAnalysis& analysis
   add(profile_section(id.profiles, profiled_parameters(id),
                       "Autocorrelated residuals and parts of the drive that scatter widen profiles as they widen the "
                       "error bars; what [identify.uncertainty] adds is in the error bars only."));
-  if (!id.validation.stretches.empty()) add(validation_section(id.validation));
+  if (held_out) add(validation_section(id.validation));
   add(open_loop_section(analysis.open_loop));
   add(drive_path_section(analysis.open_loop.path));
   add(methods_section(analysis));

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/index.hpp"
@@ -23,6 +25,8 @@ using namespace veridyn::muscle;
 
 /// Tasks in a figure; more would be slivers.
 constexpr std::size_t kMostPanels = 12;
+/// Tasks on the first screen.
+constexpr std::size_t kLeadTasks = 4;
 
 std::size_t count_tasks(const MuscleAnalysis& a, bool hold_out) {
   return static_cast<std::size_t>(
@@ -32,7 +36,7 @@ std::size_t count_tasks(const MuscleAnalysis& a, bool hold_out) {
 std::vector<Fact> task_facts(const TaskStudy& study, const MuscleAnalysis& a) {
   std::vector<Fact> list{{"Model", study.subject.model_name},
                          {"Recording", study.person ? "a simulated person" : "measured motion"},
-                         {"Estimated from", fmt::format("{} tasks", count_tasks(a, false))},
+                         {"Estimated", a.estimate.verdict},
                          {"Held out", fmt::format("{} tasks", count_tasks(a, true))}};
   if (study.emg) {
     list.push_back(
@@ -190,6 +194,19 @@ std::vector<double> output_column(const estimation::RowMatrix& values, std::size
   return column;
 }
 
+/// Measured, with the standard model's parameters, and with the estimate.
+Panel task_panel(const MuscleAnalysis& a, const TaskOutcome& t, std::size_t output, std::string label) {
+  const ReadableNumber unit = readable(1.0, a.outputs[output].unit);
+  const auto line = [&](const char* name, const estimation::RowMatrix& values, Role role) {
+    return Line{.name = name, .y = output_column(values, output, unit.value), .x = t.time, .role = role};
+  };
+  Panel panel{.label = std::move(label), .unit = unit.unit, .height = 130};
+  panel.lines.push_back(line("measured", t.measured, Role::kMeasured));
+  if (t.standard.size() > 0) panel.lines.push_back(line("standard model", t.standard, Role::kReference));
+  if (t.estimated.size() > 0) panel.lines.push_back(line("estimate", t.estimated, Role::kEstimate));
+  return panel;
+}
+
 TimeSeries task_figure(const MuscleAnalysis& a, bool hold_out) {
   TimeSeries figure{.title = hold_out ? "Unseen tasks" : "Tasks that the estimate is from",
                     .caption = "Measured, with the standard model's parameters (dashed), with the estimate.",
@@ -197,22 +214,36 @@ TimeSeries task_figure(const MuscleAnalysis& a, bool hold_out) {
   for (const TaskOutcome& t : a.tasks) {
     if (t.hold_out != hold_out) continue;
     if (t.time.size() > figure.samples.size()) figure.samples = t.time;
-    for (std::size_t j = 0; j < a.outputs.size() && figure.panels.size() < kMostPanels; ++j) {
-      const ReadableNumber unit = readable(1.0, a.outputs[j].unit);
-      Panel panel{.label = fmt::format("{}: {}", t.name, a.outputs[j].name), .unit = unit.unit, .height = 130};
-      panel.lines.push_back(
-          {.name = "measured", .y = output_column(t.measured, j, unit.value), .x = t.time, .role = Role::kMeasured});
-      if (t.standard.size() > 0)
-        panel.lines.push_back({.name = "standard model",
-                               .y = output_column(t.standard, j, unit.value),
-                               .x = t.time,
-                               .role = Role::kReference});
-      if (t.estimated.size() > 0)
-        panel.lines.push_back({.name = "estimate", .y = output_column(t.estimated, j, unit.value), .x = t.time});
-      figure.panels.push_back(std::move(panel));
-    }
+    for (std::size_t j = 0; j < a.outputs.size() && figure.panels.size() < kMostPanels; ++j)
+      figure.panels.push_back(task_panel(a, t, j, fmt::format("{}: {}", t.name, a.outputs[j].name)));
   }
   return figure;
+}
+
+/// The first screen: unseen tasks, or where there is none those that the estimate is from; of many those that are
+/// predicted worst. A figure each.
+std::vector<TimeSeries> task_lead(const MuscleAnalysis& a) {
+  const bool hold_out = count_tasks(a, true) > 0;
+  std::vector<const TaskOutcome*> tasks;
+  for (const TaskOutcome& t : a.tasks)
+    if (t.hold_out == hold_out) tasks.push_back(&t);
+  if (tasks.size() > kLeadTasks) {
+    // What cannot be simulated is the worst.
+    std::ranges::stable_sort(tasks, std::greater(), [](const TaskOutcome* t) {
+      return std::isfinite(t->after.nrmse) ? t->after.nrmse : std::numeric_limits<double>::infinity();
+    });
+    tasks.resize(kLeadTasks);
+  }
+  std::vector<TimeSeries> figures;
+  for (const TaskOutcome* t : tasks) {
+    TimeSeries figure{.title = fmt::format("{} ({})", t->name, hold_out ? "unseen" : "trained"),
+                      .samples = t->time,
+                      .axis = "lead/" + t->name};
+    for (std::size_t j = 0; j < a.outputs.size() && figure.panels.size() < 3; ++j)
+      figure.panels.push_back(task_panel(a, *t, j, a.outputs[j].name));
+    if (!figure.panels.empty()) figures.push_back(std::move(figure));
+  }
+  return figures;
 }
 
 Section cost_section(const MuscleAnalysis& a) {
@@ -253,7 +284,7 @@ Document muscle_task_report(const TaskStudy& study, const MuscleAnalysis& a, con
       study.subject.title, validation_only ? "An estimate validated on unseen tasks" : "A person's muscles from tasks",
       program);
   document.verdict = verdict_of(a.estimate);
-  document.verdict.lines.insert(document.verdict.lines.begin(), a.estimate.verdict);
+  for (TimeSeries& figure : task_lead(a)) document.lead.emplace_back(std::move(figure));
   document.facts = task_facts(study, a);
   const auto add = [&](Section section) {
     if (!section.blocks.empty()) document.sections.push_back(std::move(section));
@@ -267,7 +298,9 @@ Document muscle_task_report(const TaskStudy& study, const MuscleAnalysis& a, con
   tasks.blocks.emplace_back(task_table(a));
   for (const bool hold_out : {true, false}) {
     TimeSeries figure = task_figure(a, hold_out);
-    if (!figure.panels.empty()) tasks.blocks.emplace_back(std::move(figure));
+    // Fewer are all on the first screen.
+    const bool shown = count_tasks(a, true) <= kLeadTasks && a.outputs.size() <= 3 && hold_out;
+    if (!figure.panels.empty() && !shown) tasks.blocks.emplace_back(std::move(figure));
   }
   if (!a.predictions.empty()) tasks.blocks.emplace_back(prediction_table(a.predictions, "Prediction of unseen tasks"));
   add(std::move(tasks));

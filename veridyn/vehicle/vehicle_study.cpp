@@ -74,21 +74,9 @@ EstimatedDriveModel model_of(const estimation::Estimate& estimate, const Vehicle
 }
 
 VehicleEstimate given_estimate(const estimation::Estimate& estimate) {
-  VehicleEstimate given;
-  given.method = vehicle_method(estimate.method);
-  given.usable = true;
+  VehicleEstimate given{.method = vehicle_method(estimate.method), .usable = true};
+  given.parameters = estimate.parameters;
   given.covariance = estimate.covariance;
-  for (const estimation::Parameter& e : estimate.parameters) {
-    estimation::Parameter q;
-    q.name = e.name;
-    q.unit = e.unit;
-    q.value = e.value;
-    q.sigma = e.sigma;
-    q.low95 = e.low95;
-    q.high95 = e.high95;
-    q.status = e.status;
-    given.parameters.push_back(std::move(q));
-  }
   return given;
 }
 

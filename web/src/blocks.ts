@@ -112,8 +112,13 @@ function summary_of(blocks: Block[]): string {
 
 /** A section that folds: open at first unless the report folds it. */
 export function draw_section(section: Section): HTMLElement {
-  const summary = h('summary', {}, h('h2', {}, section.title), h('span', { class: 'inside' }, summary_of(section.blocks)));
+  const summary = h('summary', {}, h('h2', {}, section.title), h('span', { class: 'inside' }, section.inside || summary_of(section.blocks)));
   return h('section', { id: section.id }, h('details', { class: 'section', open: !section.folded }, summary, ...draw_blocks(section.blocks)));
+}
+
+/** What an engineer of the field looks at first: figures side by side where there is room. */
+export function draw_lead(blocks: Block[]): HTMLElement | null {
+  return blocks.length === 0 ? null : h('section', { class: 'lead', 'aria-label': 'Measured and model' }, ...blocks.map(draw_block));
 }
 
 export function draw_contents(report: Document): HTMLElement {

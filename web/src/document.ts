@@ -208,6 +208,8 @@ export interface Section {
   title: string;
   id: string;
   folded: boolean;
+  /** Said beside the title; empty: how many tables and figures. */
+  inside: string;
   blocks: Block[];
 }
 
@@ -218,6 +220,8 @@ export interface Document {
   title: string;
   subtitle: string;
   verdict: Verdict;
+  /** On the first screen, below the verdict. */
+  lead: Block[];
   facts: Fact[];
   sections: Section[];
 }

@@ -2,7 +2,7 @@ import './pixel_ratio';
 import 'uplot/dist/uPlot.min.css';
 import './style.css';
 import type { Document } from './document';
-import { draw_contents, draw_facts, draw_section, draw_verdict } from './blocks';
+import { draw_contents, draw_facts, draw_lead, draw_section, draw_verdict } from './blocks';
 import { h, icon } from './dom';
 import { expand_button, follow_links, unfold_for_print } from './folding';
 import { fit_all } from './plots/frame';
@@ -79,6 +79,7 @@ function draw(report: Document, root: HTMLElement): void {
         {},
         h('div', { class: 'title' }, h('h1', {}, report.title), report.subtitle === '' ? null : h('p', { class: 'subtitle' }, report.subtitle)),
         draw_verdict(report.verdict),
+        draw_lead(report.lead),
         report.facts.length === 0 ? null : draw_facts(report.facts),
         ...sections,
         h('footer', {}, report.generator),

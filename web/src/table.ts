@@ -5,6 +5,9 @@ import { badge, status_label, status_tone } from './status';
 
 const kCopyIcon = 'M9 9h11v11H9zM5 15H4V4h11v1';
 
+/** Characters of a sentence, which gets its share of the width beside columns of words. */
+const kLongText = 60;
+
 type Row = Table['rows'][number];
 
 function sort_value(cell: Cell | undefined): number | string {
@@ -26,7 +29,8 @@ function compare(a: Cell | undefined, b: Cell | undefined): number {
 function draw_cell(cell: Cell, column: Column | undefined): HTMLElement {
   const text = cell.t === undefined ? undefined : with_minus(cell.t);
   const content = cell.s === undefined || cell.s === '' ? (text ?? '') : badge(cell.s, text);
-  return h('td', { class: column?.align ?? 'left' }, content);
+  const long = (text?.length ?? 0) > kLongText ? ' long' : '';
+  return h('td', { class: (column?.align ?? 'left') + long }, content);
 }
 
 function draw_row(table: Table, row: Row): HTMLTableRowElement {

@@ -5,9 +5,12 @@ import { describe, test } from 'node:test';
 import { skip, steps, time_series, with_browser } from './page.mjs';
 
 describe('a figure', { skip }, () => {
-  const { open_sections } = (() => {
+  const { open_sections, open_lead } = (() => {
     const tester = with_browser();
-    return { open_sections: (...all) => tester.open_sections(...all) };
+    return {
+      open_sections: (...all) => tester.open_sections(...all),
+      open_lead: (sections, lead) => tester.open_sections(sections, {}, '', lead),
+    };
   })();
   const one = (block) => [{ blocks: [block] }];
   const scale = (page, axis, plot = 0) =>
@@ -31,6 +34,57 @@ describe('a figure', { skip }, () => {
     await page.mouse.up();
     await page.waitForTimeout(150);
   };
+
+  test('of the first screen stand side by side between verdict and facts', async () => {
+    const x = steps(0, 10, 50);
+    const lead = [time_series(x, [[{ name: 'a', y: x }]]), time_series(x, [[{ name: 'b', y: x }]])];
+    const { page, close } = await open_lead(one({ kind: 'paragraph', text: 'later', tone: 'plain' }), lead);
+    const [verdict, first, second, section] = await Promise.all(
+      ['.verdict', '.lead figure:nth-child(1)', '.lead figure:nth-child(2)', '#section-0'].map((name) => page.locator(name).boundingBox()),
+    );
+    assert.ok(verdict.y + verdict.height <= first.y && first.y + first.height <= section.y);
+    assert.equal(first.y, second.y);
+    assert.ok(first.x + first.width <= second.x);
+    await close();
+  });
+
+  test('writes no label of a region over another', async () => {
+    const x = steps(0, 10, 50);
+    const spans = [
+      { from: 0, to: 6, label: 'longitudinal identification', tone: 'primary' },
+      { from: 0.5, to: 9, label: 'lateral identification', tone: 'primary' },
+      { from: 6, to: 10, label: 'hold-out', tone: 'secondary' },
+    ];
+    const { page, close } = await open_sections(one(time_series(x, [[{ name: 'a', y: x }]], { spans })));
+    const labels = await page.evaluate(async () => {
+      const { uplot } = document.querySelector('.plot');
+      const seen = [];
+      const write = CanvasRenderingContext2D.prototype.fillText;
+      CanvasRenderingContext2D.prototype.fillText = function (text, left, top) {
+        if (/identification|hold-out/.test(text)) seen.push({ text, left, top, right: left + this.measureText(text).width });
+        write.call(this, text, left, top);
+      };
+      uplot.redraw(false);
+      await new Promise((done) => setTimeout(done, 100));
+      CanvasRenderingContext2D.prototype.fillText = write;
+      return seen;
+    });
+    assert.equal(labels.length, 3, JSON.stringify(labels));
+    for (const a of labels)
+      for (const b of labels)
+        if (a !== b && a.top === b.top) assert.ok(a.right <= b.left || b.right <= a.left, `${a.text} over ${b.text}`);
+    await close();
+  });
+
+  test('shows a time of every window of a broken abscissa', async () => {
+    const x = steps(0, 100, 500);
+    const windows = [{ from: 1, to: 4 }, { from: 50, to: 53.9 }, { from: 96.2, to: 99.8 }];
+    const { page, close } = await open_sections(one(time_series(x, [[{ name: 'a', y: x }]], { windows })), { viewport: { width: 480, height: 800 } });
+    await page.waitForTimeout(200);
+    const labels = await page.evaluate(() => [...document.querySelectorAll('.plot')].flatMap(({ uplot }) => uplot.axes[0]._values));
+    for (const { from, to } of windows) assert.ok(labels.some((label) => Number(label) >= from && Number(label) <= to), `${labels} has none from ${from} to ${to}`);
+    await close();
+  });
 
   test('gives the labels of an ordinate the room that they need, minus sign included', async () => {
     const x = steps(0, 10, 50);

@@ -53,7 +53,7 @@ export function with_browser() {
   let count = 0;
 
   /** Opens a page with these sections; each `{ title, blocks }`, with the rest as the program writes it. */
-  state.open_sections = (sections, options = {}, hash = '') => {
+  state.open_sections = (sections, options = {}, hash = '', lead = []) => {
     const document = {
       format: 'veridyn-report',
       version: 1,
@@ -61,8 +61,9 @@ export function with_browser() {
       title: 'Test',
       subtitle: '',
       verdict: { level: 'good', word: 'Usable', headline: 'It works.', lines: [] },
+      lead,
       facts: [],
-      sections: sections.map((section, k) => ({ id: `section-${k}`, folded: false, title: `Section ${k}`, ...section })),
+      sections: sections.map((section, k) => ({ id: `section-${k}`, folded: false, inside: '', title: `Section ${k}`, ...section })),
     };
     const begin = '<script type="application/json" id="veridyn-document">';
     const page = readFileSync(sample, 'utf8');

@@ -9,12 +9,9 @@
 
 #include "apps/veridyn/results/analysis_results.hpp"
 #include "apps/veridyn/results/open_loop_results.hpp"
-#include "apps/veridyn/run/console.hpp"
 #include "apps/veridyn/run/version.hpp"
-#include "veridyn/aircraft/identification/rows/flight_set.hpp"
 #include "veridyn/aircraft/model/jsbsim.hpp"
 #include "veridyn/estimation/judgement/subject_grades.hpp"
-#include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/numerics/threads/parallel.hpp"
 #include "veridyn/report/aircraft_report.hpp"
@@ -123,42 +120,6 @@ Recording validation_recording(const Validation& validation) {
   return recording;
 }
 
-void print_identification(const FlightAnalysis& analysis, const std::filesystem::path& folder,
-                          const CommonOptions& options) {
-  print_judgement(options, analysis.estimate);
-  for (const PreparedFlight& flight : analysis.flights) {
-    for (const AxisSegments* axis : {&flight.segments.longitudinal, &flight.segments.lateral})
-      print_line(options, of_flight(flight.name, axis->text));
-  }
-  for (const CoefficientResult& r : analysis.coefficients) {
-    // Why it is rejected is among the lines above, or in the report.
-    const bool rejected = r.verdict == estimation::GroupVerdict::kRejected;
-    print_line(options, fmt::format("  {:<12} {}", to_string(r.verdict), rejected ? r.name : r.reason));
-  }
-  for (const CoefficientResult& r : analysis.coefficients) {
-    if (r.structure)
-      print_line(options, fmt::format("  structure    {}: {}", name_of(r.coefficient), r.structure->text));
-  }
-  for (const estimation::RecordingUse& recording : analysis.estimate.recordings) {
-    std::string scores;
-    for (const auto& [name, v] : recording.validation) scores += fmt::format(", R2 of {} {:.2f}", name, v.r2);
-    print_line(options, fmt::format("  recording    {}: {}{}", recording.name, recording.use, scores));
-  }
-  for (const std::string& note : analysis.others.notes) print_line(options, fmt::format("  alongside    {}", note));
-  for (const PredictedQuantity& q : analysis.validation.quantities) {
-    print_line(options, fmt::format("  hold-out     {}: MAE {:.3g} {}, R2 {:.3f}, Theil {:.3f}", q.name, q.fit.mae,
-                                    q.unit, q.fit.r2, q.fit.theil));
-  }
-  print_open_loop(options, analysis.open_loop);
-  print_line(options, fmt::format("report: {}", (folder / "report.html").string()));
-}
-
-Summary summary_of(const FlightAnalysis& analysis, const std::filesystem::path& folder) {
-  Summary summary = estimate_summary(folder, analysis.estimate, analysis.groups);
-  if (analysis.open_loop.available()) summary["open_loop"] = open_loop_summary(analysis.open_loop);
-  return summary;
-}
-
 void write_identification(const StudyRun& run, OutputFolder& folder, const FlightStudy& study,
                           const FlightAnalysis& analysis) {
   report::AircraftReportContext context{.program = program_name()};
@@ -185,8 +146,6 @@ void write_identification(const StudyRun& run, OutputFolder& folder, const Fligh
     folder.write("flight" + number + ".csv", flights[k]);
     write_filter_tables(folder, analysis.flights[k].reconstruction, number);
   }
-  folder.write("parameters.csv", parameters_csv(analysis.estimate));
-  if (!analysis.others.empty()) folder.write("methods.csv", methods_csv(analysis));
   if (searched_structure(analysis)) folder.write("structure.csv", structure_csv(analysis));
   if (analysis.uncertainty.available()) folder.write("coefficient_uncertainty.csv", to_csv(analysis.uncertainty));
   folder.write("subject.toml",
@@ -194,7 +153,6 @@ void write_identification(const StudyRun& run, OutputFolder& folder, const Fligh
   // JSBSim flies a complete model only; `veridyn export` says what is missing.
   if (analysis.identified.inertia && analysis.identified.model.unknown_parameters().empty())
     folder.write("jsbsim.xml", graded_xml(write_jsbsim(analysis.identified), analysis.estimate.judgement));
-  folder.write("estimate.json", io::to_json(analysis.estimate));
 }
 
 }  // namespace
@@ -217,12 +175,11 @@ std::vector<std::filesystem::path> inputs_of(std::span<const FlightStudy> studie
 }
 
 void publish_identification(const StudyRun& run, OutputFolder& folder, std::span<const FlightStudy> studies,
-                            const FlightAnalysis& analysis, const std::vector<std::filesystem::path>& more_inputs) {
+                            const FlightAnalysis& analysis) {
   write_identification(run, folder, studies.front(), analysis);
-  RunRecord record = run.record(studies.front().seed, inputs_of(studies));
-  record.inputs.insert(record.inputs.end(), more_inputs.begin(), more_inputs.end());
-  folder.publish(record, run.options(), summary_of(analysis, folder.path()));
-  print_identification(analysis, folder.path(), run.options());
+  MoreResults more{.lines = open_loop_lines(analysis.open_loop)};
+  if (analysis.open_loop.available()) more.summary.emplace_back("open_loop", open_loop_summary(analysis.open_loop));
+  publish_analysis(folder, run.record(studies.front().seed, inputs_of(studies)), run.options(), analysis, more);
 }
 
 }  // namespace veridyn::app

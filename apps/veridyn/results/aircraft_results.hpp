@@ -18,10 +18,8 @@ namespace veridyn::app {
 /// flight.csv, coefficients.csv, validation.csv, report.html, run.json; jsbsim.xml where every coefficient was
 /// identified. Of several flights flight_1.csv, flight_2.csv, ... in place of flight.csv.
 /// @param studies  a flight each
-/// @param more_inputs of the run record, beyond the study and what it names
 void publish_identification(const StudyRun& run, OutputFolder& folder, std::span<const aircraft::FlightStudy> studies,
-                            const aircraft::FlightAnalysis& analysis,
-                            const std::vector<std::filesystem::path>& more_inputs = {});
+                            const aircraft::FlightAnalysis& analysis);
 
 /// The files of a reconstruction: flight.csv (smoother), filter.csv, report.html.
 void write_reconstruction(OutputFolder& folder, const aircraft::FlightStudy& study,

@@ -1,33 +1,29 @@
 #pragma once
 
-#include <filesystem>
-#include <span>
 #include <string>
+#include <vector>
 
-#include "apps/veridyn/run/command.hpp"
-#include "apps/veridyn/run/summary.hpp"
+#include "apps/veridyn/run/output_folder.hpp"
 #include "veridyn/estimation/result/analysis.hpp"
 
 namespace veridyn::app {
 
-// Tables that every identification writes, whatever its domain.
+/// What a command has besides the analysis that all domains share.
+struct MoreResults {
+  std::vector<Summary::Member> summary = {};  ///< for `--json`
+  std::vector<std::string> lines = {};        ///< for people, after parameters and predictions
+};
 
-/// parameters.csv: the parameters with intervals and status.
-[[nodiscard]] std::string parameters_csv(const estimation::Estimate& estimate);
-
-/// methods.csv: every method's figures for every parameter, group by group in the order in which methods were tried.
-[[nodiscard]] std::string methods_csv(const estimation::Analysis& analysis);
-
-/// The three grades in a sentence, then in five lines at most what decided and what to do.
-void print_judgement(const CommonOptions& options, const estimation::Estimate& estimate);
+/// Writes, publishes and prints what an estimate says, whatever command and domain. Files: estimate.json,
+/// parameters.csv, methods.csv (every method's figures for every parameter, where several were tried), run.json, beside
+/// report.html and what the domain wrote. `--json`: `folder`, `verdict` (a word), `sentence` (the three grades),
+/// `groups` (each with name, verdict, reason and method), `estimate` (all of estimate.json), then `more`. For people:
+/// the three grades in a sentence, five lines at most on what decided and what to do, groups, parameters, predictions,
+/// `more`, warnings.
+void publish_analysis(OutputFolder& folder, const RunRecord& record, const CommonOptions& options,
+                      const estimation::Analysis& analysis, const MoreResults& more = {});
 
 /// A model as XML with a comment that says for which purposes it may be used; TOML: `estimation::graded_toml`.
 [[nodiscard]] std::string graded_xml(const std::string& xml, const estimation::Judgement& judgement);
-
-/// What `--json` says of any estimate, whatever command and domain: `folder`, `verdict` (a word), `sentence` (the three
-/// grades), `groups` (each with name, verdict, reason and method), `estimate` (all of estimate.json). A command adds
-/// what it has besides.
-[[nodiscard]] Summary estimate_summary(const std::filesystem::path& folder, const estimation::Estimate& estimate,
-                                       std::span<const estimation::ParameterGroup> groups = {});
 
 }  // namespace veridyn::app

@@ -11,12 +11,10 @@
 #include "apps/veridyn/results/open_loop_results.hpp"
 #include "apps/veridyn/results/profile_results.hpp"
 #include "apps/veridyn/results/study_tables.hpp"
-#include "apps/veridyn/run/console.hpp"
 #include "apps/veridyn/run/version.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/estimation/judgement/subject_grades.hpp"
-#include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/report/drive_report.hpp"
@@ -86,21 +84,20 @@ void write_path(OutputFolder& folder, const DrivePath& path) {
   folder.write("open_loop_path.csv", io::to_csv(recording));
 }
 
-void print_path(const CommonOptions& options, const DrivePath& path) {
+std::vector<std::string> path_lines(const DrivePath& path) {
+  std::vector<std::string> lines;
   if (path.heading)
-    print_line(options, fmt::format("  open loop    heading: RMSE {:.3g} deg, {:.3g} deg off at the end",
-                                    path.heading->rmse / kDegree, path.heading->at_end / kDegree));
+    lines.push_back(fmt::format("  open loop    heading: RMSE {:.3g} deg, {:.3g} deg off at the end",
+                                path.heading->rmse / kDegree, path.heading->at_end / kDegree));
   if (path.position)
-    print_line(options, fmt::format("  open loop    path: RMSE {:.3g} m ({:.3g} m across), {:.3g} m off after {:.0f} m",
-                                    path.position->rmse, path.across_rmse, path.position->at_end, path.distance_m));
+    lines.push_back(fmt::format("  open loop    path: RMSE {:.3g} m ({:.3g} m across), {:.3g} m off after {:.0f} m",
+                                path.position->rmse, path.across_rmse, path.position->at_end, path.distance_m));
+  return lines;
 }
 
 void write_results(OutputFolder& folder, const PreparedDrive& drive, const VehicleAnalysis& analysis,
                    bool validation_only) {
   const VehicleIdentification& id = analysis.identification;
-  folder.write("estimate.json", io::to_json(analysis.estimate));
-  folder.write("parameters.csv", parameters_csv(analysis.estimate));
-  folder.write("methods.csv", methods_csv(analysis));
   folder.write("validation.csv", prediction_csv(id.validation));
   write_open_loop(folder, analysis.open_loop, Frame::kFlu);
   write_path(folder, analysis.open_loop.path);
@@ -122,54 +119,31 @@ void write_results(OutputFolder& folder, const PreparedDrive& drive, const Vehic
   folder.write("report.html", report::to_html(report::drive_report(drive.study, analysis, context)));
 }
 
-void print_analysis(const VehicleAnalysis& analysis, const std::filesystem::path& folder,
-                    const CommonOptions& options) {
-  const VehicleIdentification& id = analysis.identification;
-  print_judgement(options, analysis.estimate);
-  const estimation::Estimate& estimate = analysis.estimate;
-  if (!estimate.structure_reason.empty())
-    print_line(options, estimate.structure_reason);
-  else if (!estimate.structure.empty())
-    print_line(options, fmt::format("structure: {}, as the study says", estimate.structure));
-  if (const VehicleEstimate* best = id.best()) {
-    for (const estimation::Parameter& p : best->parameters) {
-      print_line(options, fmt::format("  {:<20} {:>12.5g} +- {:<9.2g} {:<12} {}", p.name, p.value, p.sigma, p.unit,
-                                      estimation::to_string(p.status)));
-    }
-  }
-  print_profiles(options, id.profiles, 20);
-  for (const estimation::PredictedQuantity& q : id.validation.quantities) {
-    print_line(options,
-               fmt::format("  hold-out {:<16} R2 {:.3f}, RMSE {:.3g} {}", q.name, q.fit.r2, q.fit.rmse, q.unit));
-  }
-  print_open_loop(options, analysis.open_loop);
-  print_path(options, analysis.open_loop.path);
-  for (const std::string& warning : analysis.estimate.warnings) print_line(options, "warning: " + warning);
-  // Why it is less was said with the grades.
-  const bool said =
-      id.verdict == estimation::GroupVerdict::kRejected || id.verdict == estimation::GroupVerdict::kEffective;
-  if (!said || analysis.interrupted) print_line(options, id.reason);
-  print_line(options, fmt::format("report: {}", (folder / "report.html").string()));
+/// The scores by state, of the path too.
+Summary open_loop_scores(const DriveOpenLoop& open_loop) {
+  Summary scores = open_loop_summary(open_loop);
+  const DrivePath& path = open_loop.path;
+  if (path.heading)
+    scores["yaw"] = Summary::object(
+        {{"rmse", path.heading->rmse / kDegree}, {"at_end", path.heading->at_end / kDegree}, {"unit", "deg"}});
+  if (path.position)
+    scores["position"] = Summary::object({{"rmse", path.position->rmse},
+                                          {"at_end", path.position->at_end},
+                                          {"across_rmse", path.across_rmse},
+                                          {"way", path.distance_m},
+                                          {"unit", "m"}});
+  return scores;
 }
 
-Summary summary_of(const VehicleAnalysis& analysis, const std::filesystem::path& folder) {
-  Summary s = estimate_summary(folder, analysis.estimate, analysis.groups);
-  if (!analysis.identification.profiles.profiles.empty())
-    s["profiles"] = profiles_summary(analysis.identification.profiles);
-  if (analysis.open_loop.available()) s["open_loop"] = open_loop_summary(analysis.open_loop);
-  if (const DrivePath& path = analysis.open_loop.path; path.available()) {
-    Summary& scores = s["open_loop"];
-    if (path.heading)
-      scores["yaw"] = Summary::object(
-          {{"rmse", path.heading->rmse / kDegree}, {"at_end", path.heading->at_end / kDegree}, {"unit", "deg"}});
-    if (path.position)
-      scores["position"] = Summary::object({{"rmse", path.position->rmse},
-                                            {"at_end", path.position->at_end},
-                                            {"across_rmse", path.across_rmse},
-                                            {"way", path.distance_m},
-                                            {"unit", "m"}});
-  }
-  return s;
+MoreResults more_of(const VehicleAnalysis& analysis) {
+  const estimation::ProfileResult& profiles = analysis.identification.profiles;
+  MoreResults more{.lines = profile_lines(profiles)};
+  for (const auto& lines : {open_loop_lines(analysis.open_loop), path_lines(analysis.open_loop.path)})
+    more.lines.insert(more.lines.end(), lines.begin(), lines.end());
+  if (!profiles.profiles.empty()) more.summary.emplace_back("profiles", profiles_summary(profiles));
+  if (analysis.open_loop.available() || analysis.open_loop.path.available())
+    more.summary.emplace_back("open_loop", open_loop_scores(analysis.open_loop));
+  return more;
 }
 
 }  // namespace
@@ -199,12 +173,10 @@ PreparedDrive prepare_drive(const Study& study, Progress& progress) {
 }
 
 void publish_drive(const StudyRun& run, OutputFolder& folder, const PreparedDrive& drive,
-                   const VehicleAnalysis& analysis, const std::vector<std::filesystem::path>& more_inputs) {
+                   const VehicleAnalysis& analysis) {
   write_results(folder, drive, analysis, run.command == "validate");
-  RunRecord record = run.record(drive.study.seed, drive.study.inputs);
-  record.inputs.insert(record.inputs.end(), more_inputs.begin(), more_inputs.end());
-  folder.publish(record, run.options(), summary_of(analysis, folder.path()));
-  print_analysis(analysis, folder.path(), run.options());
+  publish_analysis(folder, run.record(drive.study.seed, drive.study.inputs), run.options(), analysis,
+                   more_of(analysis));
 }
 
 }  // namespace veridyn::app

@@ -27,9 +27,7 @@ struct PreparedDrive {
 [[nodiscard]] PreparedDrive prepare_drive(const Study& study, Progress& progress);
 
 /// Writes, publishes and prints the identification or validation of a drive.
-/// @param more_inputs of the run record, beyond the study and what it names
 void publish_drive(const StudyRun& run, OutputFolder& folder, const PreparedDrive& drive,
-                   const vehicle::VehicleAnalysis& analysis,
-                   const std::vector<std::filesystem::path>& more_inputs = {});
+                   const vehicle::VehicleAnalysis& analysis);
 
 }  // namespace veridyn::app

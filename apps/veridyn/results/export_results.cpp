@@ -19,9 +19,8 @@ bool is_graded(const std::optional<estimation::Estimate>& estimate) { return est
 void publish_export(const StudyRun& run, OutputFolder& folder, std::vector<std::filesystem::path> inputs,
                     const std::optional<estimation::Estimate>& estimate, const std::string& note) {
   const std::vector<std::string> files = folder.files();
-  RunRecord record = run.record(0, std::move(inputs));
-  if (estimate) record.inputs.emplace_back(run.arguments.text("--estimate-file"));
-  folder.publish(record, run.options(), Summary::object({{"folder", folder.path().string()}, {"files", files}}));
+  folder.publish(run.record(0, std::move(inputs)), run.options(),
+                 Summary::object({{"folder", folder.path().string()}, {"files", files}}));
   for (const std::string& name : files)
     print_line(run.options(), fmt::format("wrote {}", (folder.path() / name).string()));
   if (!note.empty()) print_line(run.options(), note);

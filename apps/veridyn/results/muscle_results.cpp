@@ -8,10 +8,8 @@
 #include "apps/veridyn/results/analysis_results.hpp"
 #include "apps/veridyn/results/posterior_results.hpp"
 #include "apps/veridyn/results/profile_results.hpp"
-#include "apps/veridyn/run/console.hpp"
 #include "apps/veridyn/run/version.hpp"
 #include "veridyn/core/index.hpp"
-#include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/io/tables/csv_text.hpp"
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/report/muscle_task_report.hpp"
@@ -50,23 +48,26 @@ std::string evaluations_csv(const MuscleAnalysis& analysis) {
   return text;
 }
 
-Summary summary_of_tasks(const MuscleAnalysis& analysis, const std::filesystem::path& folder) {
-  Summary s = estimate_summary(folder, analysis.estimate, analysis.groups);
-  s["seconds"] = analysis.result.seconds;
-  s["null_directions"] = analysis.result.null_directions;
-  if (!analysis.profiles.profiles.empty()) s["profiles"] = profiles_summary(analysis.profiles);
-  if (analysis.posterior.usable()) s["posterior"] = posterior_summary(analysis.posterior);
-  return s;
+MoreResults more_of(const MuscleAnalysis& analysis) {
+  MoreResults more{
+      .summary = {{"seconds", analysis.result.seconds}, {"null_directions", analysis.result.null_directions}}};
+  if (!analysis.profiles.profiles.empty()) more.summary.emplace_back("profiles", profiles_summary(analysis.profiles));
+  if (analysis.posterior.usable()) more.summary.emplace_back("posterior", posterior_summary(analysis.posterior));
+  for (const std::string& direction : analysis.result.null_directions)
+    more.lines.push_back("  left to the priors: " + direction);
+  for (const auto& lines : {profile_lines(analysis.profiles), posterior_lines(analysis.posterior)})
+    more.lines.insert(more.lines.end(), lines.begin(), lines.end());
+  for (const TaskOutcome& t : analysis.tasks)
+    more.lines.push_back(fmt::format("  {:<12} {}: NRMSE {:.3g} -> {:.3g}", t.hold_out ? "unseen" : "trained", t.name,
+                                     t.before.nrmse, t.after.nrmse));
+  return more;
 }
 
 }  // namespace
 
-void publish_muscles(const StudyRun& run, OutputFolder& folder, const TaskStudy& study, const MuscleAnalysis& analysis,
-                     const std::vector<std::filesystem::path>& more_inputs) {
-  const CommonOptions& options = run.options();
+void publish_muscles(const StudyRun& run, OutputFolder& folder, const TaskStudy& study,
+                     const MuscleAnalysis& analysis) {
   const bool validation_only = run.command == "validate";
-  folder.write("estimate.json", io::to_json(analysis.estimate));
-  folder.write("parameters.csv", parameters_csv(analysis.estimate));
   folder.write("tasks.csv", tasks_csv(analysis));
   if (!validation_only) folder.write("evaluations.csv", evaluations_csv(analysis));
   write_profiles(folder, analysis.profiles, analysis.estimate.parameters);
@@ -75,28 +76,7 @@ void publish_muscles(const StudyRun& run, OutputFolder& folder, const TaskStudy&
     folder.write("model.osim", study.subject.file->text_with(analysis.identified));
   folder.write("report.html",
                report::to_html(report::muscle_task_report(study, analysis, program_name(), validation_only)));
-  RunRecord record = run.record(study.seed, study.inputs);
-  record.inputs.insert(record.inputs.end(), more_inputs.begin(), more_inputs.end());
-  folder.publish(record, options, summary_of_tasks(analysis, folder.path()));
-
-  print_judgement(options, analysis.estimate);
-  for (const estimation::Parameter& p : analysis.estimate.parameters)
-    print_line(options, fmt::format("  {:<40} {:>10.5g} +- {:<9.2g} {:<5} {}", p.name, p.value, p.sigma, p.unit,
-                                    to_string(p.status)));
-  for (const std::string& direction : analysis.result.null_directions)
-    print_line(options, "  left to the priors: " + direction);
-  print_profiles(options, analysis.profiles, 40);
-  print_posterior(options, analysis.posterior);
-  for (const estimation::NextMeasurement& next : analysis.estimate.next_measurements)
-    print_line(options,
-               fmt::format("  next      {:<48} widest interval +-{:.2g} % ({}) -> {:.2g} % ({})", next.name,
-                           100.0 * next.share_now, next.widest_now, 100.0 * next.share_then, next.widest_then));
-  for (const TaskOutcome& t : analysis.tasks)
-    print_line(options, fmt::format("  {:<9} {:<48} NRMSE {:.3g} -> {:.3g}", t.hold_out ? "unseen" : "trained", t.name,
-                                    t.before.nrmse, t.after.nrmse));
-  for (const std::string& warning : analysis.estimate.warnings) print_line(options, "warning: " + warning);
-  print_line(options, analysis.estimate.verdict);
-  print_line(options, fmt::format("report: {}", (folder.path() / "report.html").string()));
+  publish_analysis(folder, run.record(study.seed, study.inputs), run.options(), analysis, more_of(analysis));
 }
 
 }  // namespace veridyn::app

@@ -10,9 +10,7 @@
 namespace veridyn::app {
 
 /// Writes, publishes and prints the identification or validation of a person's muscles.
-/// @param more_inputs of the run record, beyond the study and what it names
 void publish_muscles(const StudyRun& run, OutputFolder& folder, const muscle::TaskStudy& study,
-                     const muscle::MuscleAnalysis& analysis,
-                     const std::vector<std::filesystem::path>& more_inputs = {});
+                     const muscle::MuscleAnalysis& analysis);
 
 }  // namespace veridyn::app

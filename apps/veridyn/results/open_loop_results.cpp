@@ -54,15 +54,17 @@ void write_open_loop(OutputFolder& folder, const OpenLoop& open_loop, Frame fram
                  io::to_csv(states_recording(open_loop, group, frame)));
 }
 
-void print_open_loop(const CommonOptions& options, const OpenLoop& open_loop) {
-  if (!open_loop.text.empty()) print_line(options, "  open loop    " + open_loop.text);
+std::vector<std::string> open_loop_lines(const OpenLoop& open_loop) {
+  std::vector<std::string> lines;
+  if (!open_loop.text.empty()) lines.push_back("  open loop    " + open_loop.text);
   for (const OpenLoopState& s : open_loop.states) {
-    print_line(options,
-               fmt::format("  open loop    {}: RMSE {:.3g} {}, {:.2f} of what it varies, Theil {:.3f}, {:.0f} % "
-                           "in the bands, {} {:.1f} s ({} of {} windows held)",
-                           s.name, s.fit.rmse, s.unit, s.normalised_rmse, s.fit.theil, 100.0 * s.inside,
-                           2 * s.held > s.windows ? "not left in" : "left after", s.horizon_s, s.held, s.windows));
+    lines.push_back(
+        fmt::format("  open loop    {}: RMSE {:.3g} {}, {:.2f} of what it varies, Theil {:.3f}, {:.0f} % "
+                    "in the bands, {} {:.1f} s ({} of {} windows held)",
+                    s.name, s.fit.rmse, s.unit, s.normalised_rmse, s.fit.theil, 100.0 * s.inside,
+                    2 * s.held > s.windows ? "not left in" : "left after", s.horizon_s, s.held, s.windows));
   }
+  return lines;
 }
 
 Summary open_loop_summary(const OpenLoop& open_loop) {

@@ -1,6 +1,8 @@
 #pragma once
 
-#include "apps/veridyn/run/console.hpp"
+#include <string>
+#include <vector>
+
 #include "apps/veridyn/run/output_folder.hpp"
 #include "apps/veridyn/run/summary.hpp"
 #include "veridyn/core/recording.hpp"
@@ -12,7 +14,7 @@ namespace veridyn::app {
 /// `open_loop_longitudinal.csv`, or `open_loop.csv` of the only one. Nothing where nothing was.
 void write_open_loop(OutputFolder& folder, const estimation::OpenLoop& open_loop, Frame frame);
 /// What was done, and a line a state.
-void print_open_loop(const CommonOptions& options, const estimation::OpenLoop& open_loop);
+[[nodiscard]] std::vector<std::string> open_loop_lines(const estimation::OpenLoop& open_loop);
 /// The scores by state.
 [[nodiscard]] Summary open_loop_summary(const estimation::OpenLoop& open_loop);
 

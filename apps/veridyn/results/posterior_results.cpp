@@ -52,12 +52,14 @@ void write_posterior(OutputFolder& folder, const PosteriorSample& posterior) {
   folder.write("posterior_intervals.csv", intervals_csv(posterior));
 }
 
-void print_posterior(const CommonOptions& options, const PosteriorSample& posterior) {
-  if (!posterior.usable()) return;
+std::vector<std::string> posterior_lines(const PosteriorSample& posterior) {
+  std::vector<std::string> lines;
+  if (!posterior.usable()) return lines;
   for (const PosteriorParameter& p : posterior.parameters)
-    print_line(options, fmt::format("  posterior {:<40} {:.5g} .. {:.5g} {}", p.name, p.low, p.high, p.unit));
-  print_line(options, fmt::format("{}posterior: {}",
-                                  posterior.ensemble.converged ? "  " : "warning: ", posterior.ensemble.message));
+    lines.push_back(fmt::format("  posterior    {}: {:.5g} .. {:.5g} {}", p.name, p.low, p.high, p.unit));
+  lines.push_back(
+      fmt::format("{}posterior: {}", posterior.ensemble.converged ? "  " : "warning: ", posterior.ensemble.message));
+  return lines;
 }
 
 Summary posterior_summary(const PosteriorSample& posterior) {

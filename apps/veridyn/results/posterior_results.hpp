@@ -1,6 +1,8 @@
 #pragma once
 
-#include "apps/veridyn/run/console.hpp"
+#include <string>
+#include <vector>
+
 #include "apps/veridyn/run/output_folder.hpp"
 #include "apps/veridyn/run/summary.hpp"
 #include "veridyn/estimation/uncertainty/posterior_sampling.hpp"
@@ -11,7 +13,7 @@ namespace veridyn::app {
 /// without draws.
 void write_posterior(OutputFolder& folder, const estimation::PosteriorSample& posterior);
 /// An interval a line, and how long the walkers went.
-void print_posterior(const CommonOptions& options, const estimation::PosteriorSample& posterior);
+[[nodiscard]] std::vector<std::string> posterior_lines(const estimation::PosteriorSample& posterior);
 [[nodiscard]] Summary posterior_summary(const estimation::PosteriorSample& posterior);
 
 }  // namespace veridyn::app

@@ -5,7 +5,6 @@
 
 #include <string>
 
-#include "apps/veridyn/run/console.hpp"
 #include "veridyn/io/tables/csv_text.hpp"
 
 namespace veridyn::app {
@@ -56,10 +55,12 @@ Summary profiles_summary(const estimation::ProfileResult& profiles) {
   return s;
 }
 
-void print_profiles(const CommonOptions& options, const estimation::ProfileResult& profiles, int columns) {
-  if (!profiles.message.empty()) print_line(options, "warning: " + profiles.message);
+std::vector<std::string> profile_lines(const estimation::ProfileResult& profiles) {
+  std::vector<std::string> lines;
+  if (!profiles.message.empty()) lines.push_back("warning: " + profiles.message);
   for (const estimation::ParameterProfile& p : profiles.profiles)
-    print_line(options, fmt::format("  profile   {:<{}} {} {}", p.name, columns, p.text(), p.unit));
+    lines.push_back(fmt::format("  profile      {}: {} {}", p.name, p.text(), p.unit));
+  return lines;
 }
 
 }  // namespace veridyn::app

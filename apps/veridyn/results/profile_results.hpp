@@ -1,8 +1,9 @@
 #pragma once
 
 #include <span>
+#include <string>
+#include <vector>
 
-#include "apps/veridyn/run/command.hpp"
 #include "apps/veridyn/run/output_folder.hpp"
 #include "apps/veridyn/run/summary.hpp"
 #include "veridyn/estimation/result/parameter.hpp"
@@ -19,7 +20,7 @@ void write_profiles(OutputFolder& folder, const estimation::ProfileResult& profi
 /// The intervals for the summary, by parameter.
 [[nodiscard]] Summary profiles_summary(const estimation::ProfileResult& profiles);
 
-/// A line for each profile, names in so many columns; why there is none.
-void print_profiles(const CommonOptions& options, const estimation::ProfileResult& profiles, int columns);
+/// A line for each profile; why there is none.
+[[nodiscard]] std::vector<std::string> profile_lines(const estimation::ProfileResult& profiles);
 
 }  // namespace veridyn::app

@@ -126,6 +126,7 @@ Domain domain_of(const Study& study) {
 RunRecord StudyRun::record(std::uint64_t seed, std::vector<std::filesystem::path> inputs) const {
   inputs.insert(inputs.end(), subject_files.begin(), subject_files.end());
   inputs.push_back(path);
+  if (arguments.given("--estimate-file")) inputs.emplace_back(arguments.text("--estimate-file"));
   return {command, study.name(), study.to_toml(), seed, std::move(inputs), text_to_write};
 }
 

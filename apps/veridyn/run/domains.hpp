@@ -39,8 +39,8 @@ struct StudyRun {
   std::vector<std::filesystem::path> subject_files = {};  ///< from which it takes a subject
 
   [[nodiscard]] const CommonOptions& options() const { return arguments.common; }
-  /// What run.json says of this run; `inputs` are the files read beyond the study and its subject's, which are
-  /// added.
+  /// What run.json says of this run; `inputs` are the files read beyond the study, its subject's and the estimate of
+  /// `--estimate-file`, which are added.
   [[nodiscard]] RunRecord record(std::uint64_t seed, std::vector<std::filesystem::path> inputs = {}) const;
 };
 

@@ -1,10 +1,13 @@
 #include "veridyn/estimation/judgement/check.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <set>
+
+#include "veridyn/estimation/judgement/check_table.hpp"
 
 namespace veridyn::estimation {
 namespace {
@@ -51,6 +54,22 @@ TEST(RowOf, TakesItsOutcomeAndTheLimitThatDecidedFromTheTable) {
   EXPECT_EQ(low.limit, info_of(Check::kLateralAcceleration).tolerance.lowest);
   EXPECT_EQ(row_of(Check::kAirspeedScale, "airspeed", 1.05, 0.02).outcome, Outcome::kPassed)
       << "1.05 is no more than three standard errors of 0.02 above 1.02";
+}
+
+TEST(LimitInWords, HasTheSenseOfTheTableOrOfWhatCameOfTheRow) {
+  EXPECT_EQ(limit_in_words(row_of(Check::kClippedSamples, "gyro", 0.2)),
+            fmt::format("at most {:.4g}", info_of(Check::kClippedSamples).tolerance.highest));
+  EXPECT_EQ(limit_in_words(row_of(Check::kHoldOut, "yaw_rate", 0.9)), "at least 0.5");
+  EXPECT_EQ(limit_in_words(row_of(Check::kAirspeedScale, "airspeed", 0.9, 0.03)), "0.98 to 1.02");
+  EXPECT_EQ(limit_in_words(row_of(Check::kSamples, "recording", Outcome::kPassed)), "–");
+  Evidence row = row_of(Check::kUnmodelledCoefficient, "Cm", Outcome::kPassed);
+  row.value = 0.02;
+  row.limit = 0.1;
+  EXPECT_EQ(limit_in_words(row), "at most 0.1");
+  EXPECT_EQ(limit_in_words(row, 100.0), "at most 10");
+  row.value = 0.2;
+  row.outcome = Outcome::kFailed;
+  EXPECT_EQ(limit_in_words(row), "at most 0.1");
 }
 
 TEST(Says, FillsThePhraseOfTheTableWithTheRowsNumbers) {

@@ -16,13 +16,15 @@ TEST(Reasons, AreTheWorstFirstWithWhatToDoAndNothingTwice) {
       held("gyro", 4.0), held("vane", 9.0), held("airspeed", 1.0),
       row_of(Check::kClippedSamples, "accel_z", 0.2).with("channel", std::string("accel_z")).with("end_of_range", 9.0)};
   const Reasons reasons = reasons_of(rows);
-  ASSERT_EQ(reasons.lines.size(), 5U);
+  ASSERT_EQ(reasons.lines.size(), 4U);
   EXPECT_EQ(reasons.lines[0].outcome, Outcome::kFailed);
   EXPECT_TRUE(reasons.lines[1].is_advice);
   EXPECT_NE(reasons.lines[2].text.find("gyro"), std::string::npos);
+  EXPECT_TRUE(reasons.lines[2].text.ends_with(" (likewise vane)")) << reasons.lines[2].text;
   EXPECT_TRUE(reasons.lines[3].is_advice);
-  EXPECT_NE(reasons.lines[4].text.find("vane"), std::string::npos) << "of the same advice nothing is said again";
   EXPECT_EQ(reasons.left_out, 0U);
+  EXPECT_TRUE(reasons.quotes(0) && reasons.quotes(3));
+  EXPECT_FALSE(reasons.quotes(1)) << "it is only named";
   const Reasons few = reasons_of(rows, 2);
   EXPECT_EQ(few.lines.size(), 2U);
   EXPECT_EQ(few.left_out, 2U);

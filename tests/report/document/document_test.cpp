@@ -16,6 +16,18 @@ TEST(SectionIds, AreDifferentAndSafeInALink) {
               testing::ElementsAre("what-was-flown", "what-was-flown-2", "section", "what-was-flown-2-2", "report-2"));
 }
 
+TEST(WithCaptionsOnce, LeavesACaptionAtTheFirstThatHasIt) {
+  const Document document = with_captions_once(
+      {.lead = {XYPlot{.caption = "one"}},
+       .sections = {{.blocks = {Paragraph{"text"}, Table{.caption = "two"}, XYPlot{.caption = "one"}}},
+                    {.blocks = {Table{.caption = "two"}, Table{.caption = "three"}}}}});
+  EXPECT_EQ(std::get<XYPlot>(document.lead[0]).caption, "one");
+  EXPECT_EQ(std::get<Table>(document.sections[0].blocks[1]).caption, "two");
+  EXPECT_EQ(std::get<XYPlot>(document.sections[0].blocks[2]).caption, "");
+  EXPECT_EQ(std::get<Table>(document.sections[1].blocks[0]).caption, "");
+  EXPECT_EQ(std::get<Table>(document.sections[1].blocks[1]).caption, "three");
+}
+
 TEST(Status, ReadsBackItsName) {
   for (const Status status :
        {Status::kIdentified, Status::kInsignificant, Status::kNotExcited, Status::kRejected, Status::kFixed}) {

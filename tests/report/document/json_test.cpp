@@ -41,6 +41,12 @@ TEST(ToJson, HoldsEveryKindOfBlock) {
   }
 }
 
+TEST(ToJson, HoldsTheFirstScreenAndWhatIsInsideOfASection) {
+  const json report = parsed({.lead = {Paragraph{"measured against model"}}, .sections = {{.inside = "2 failed"}}});
+  EXPECT_EQ(report["lead"][0]["text"], "measured against model");
+  EXPECT_EQ(report["sections"][0]["inside"], "2 failed");
+}
+
 TEST(ToJson, HoldsTheWindowsOfAFigure) {
   const json figure = first_block(TimeSeries{.windows = {{.from = 1.0, .to = 2.5}, {.from = 9.0, .to = 10.0}}});
   ASSERT_EQ(figure["windows"].size(), 2U);

@@ -119,15 +119,25 @@ TEST(VerdictOf, SaysWhatDecidedAndWhatToDo) {
   EXPECT_EQ(verdict_of(judged_estimate(Outcome::kFailed)).level, Level::kBad);
 }
 
-TEST(EvidenceSection, HasARowForEachCheck) {
+TEST(EvidenceSection, HasWhatFailedFirstAndEachSentenceOnce) {
+  using estimation::Outcome;
   Analysis analysis = analysis_with(GroupVerdict::kIdentified);
   EXPECT_TRUE(evidence_section(analysis.estimate).blocks.empty());
-  analysis.estimate = judged_estimate(estimation::Outcome::kFailed);
-  const auto tables = blocks<Table>(evidence_section(analysis.estimate));
-  ASSERT_EQ(tables.size(), 1U);
-  ASSERT_EQ(tables[0].rows.size(), 1U);
-  EXPECT_EQ(tables[0].rows[0].cells.size(), tables[0].columns.size());
-  EXPECT_EQ(tables[0].rows[0].cells[2].status, Status::kBad);
+  analysis.estimate = judged_estimate(Outcome::kPassed);
+  for (const Outcome outcome : {Outcome::kCare, Outcome::kFailed, Outcome::kCare, Outcome::kNotVerified})
+    analysis.estimate.evidence.push_back(judged_estimate(outcome).evidence.front());
+  analysis.estimate.evidence[3].bears_on = {};
+  const Section section = evidence_section(analysis.estimate);
+  EXPECT_EQ(section.inside, "1 failed, 1 with care, 1 not verified, 1 for information, 1 passed");
+  const auto tables = blocks<Table>(section);
+  ASSERT_EQ(tables.size(), 5U);
+  EXPECT_EQ(tables[0].title, "1 of 5 failed");
+  for (const Table& table : tables) {
+    ASSERT_EQ(table.rows.size(), 1U);
+    EXPECT_EQ(table.rows[0].cells.size(), table.columns.size());
+  }
+  EXPECT_EQ(tables[0].rows[0].cells[4].text, "see the top of this page");
+  EXPECT_THAT(tables[4].rows[0].cells[4].text, testing::HasSubstr("gps"));
 }
 
 TEST(PredictionTable, HasARowForEachQuantity) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/report/document/number_format.hpp"
 
 namespace veridyn::report {
@@ -24,17 +25,22 @@ TEST(ParameterColumns, HaveTheTruthOnlyWhereItIsKnown) {
   EXPECT_EQ(parameter_columns(true).back().name, "truth");
 }
 
-TEST(OutcomeCell, ShowsWhatCameOfACheck) {
-  using estimation::Outcome;
-  const auto status = [](Outcome outcome) {
-    return outcome_cell({.outcome = outcome, .bears_on = estimation::Purpose::kData}).status;
+TEST(EvidenceRow, ShowsValueAndLimitInTheUnitAndSenseOfTheReader) {
+  using estimation::Check;
+  const auto shown = [](const estimation::Evidence& row, bool said = false) {
+    const std::vector<Column> columns = evidence_columns();
+    const std::vector<Cell> cells = evidence_row(row, said).cells;
+    std::vector<std::string> texts;
+    for (std::size_t k = 0; k < columns.size(); ++k) texts.push_back(cell_text(cells[k], columns[k]));
+    return texts;
   };
-  EXPECT_EQ(status(Outcome::kPassed), Status::kGood);
-  EXPECT_EQ(status(Outcome::kNotVerified), Status::kNone);
-  EXPECT_EQ(status(Outcome::kCare), Status::kCaution);
-  EXPECT_EQ(status(Outcome::kMissing), Status::kCaution);
-  EXPECT_EQ(status(Outcome::kFailed), Status::kBad);
-  EXPECT_EQ(outcome_cell({.outcome = Outcome::kCare}).text, "note") << "it bears on nothing";
+  EXPECT_THAT(shown(estimation::row_of(Check::kPlausibleUndersteer, "understeer_gradient", 0.02, 0.001)),
+              testing::ElementsAre("plausibility of understeer_gradient", "1.15 ± 0.057", "-2.865\u00a0to\u00a011.46",
+                                   "deg/g", "the understeer is 1.1 deg/g", "parameters"));
+  const std::vector<std::string> clipped =
+      shown(estimation::row_of(Check::kClippedSamples, "gyro", 0.2).with("channel", std::string("gyro")), true);
+  EXPECT_THAT(clipped[2], testing::StartsWith("at\u00a0most\u00a0"));
+  EXPECT_EQ(clipped[4], "see the top of this page");
 }
 
 TEST(ChangeRow, TellsAMovedMeanFromGrownNoise) {

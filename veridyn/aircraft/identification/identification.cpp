@@ -123,12 +123,12 @@ struct ExplainedVerdict {
 
 /// Why the parameters of an estimate are no physical constants.
 std::string objection(const CoefficientResult& judged, const CoefficientChecks& checks) {
+  if (estimation::verdict_of(judged.judgement) == estimation::GroupVerdict::kEffective)
+    return fmt::format("{} predicts {:.0f} % of the hold-out, but its values are no physical constants", judged.name,
+                       100.0 * std::max(0.0, checks.holdout_fit.r2));
   const std::vector<std::string>& why = judged.judgement.parameters.decided_by;
-  const std::string first = why.empty() ? "its parameters could not be judged" : why.front();
-  if (estimation::verdict_of(judged.judgement) != estimation::GroupVerdict::kEffective)
-    return fmt::format("{} is rejected: {}", judged.name, first);
-  return fmt::format("{} predicts {:.0f} % of the hold-out, but its values are no physical constants: {}", judged.name,
-                     100.0 * std::max(0.0, checks.holdout_fit.r2), first);
+  return fmt::format("{} is rejected: {}", judged.name,
+                     why.empty() ? "its parameters could not be judged" : why.front());
 }
 
 /// Of an estimate that may be used. `method` gave it, `dominant` is the constant of the aircraft that makes up most of

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace veridyn::estimation {
 namespace {
@@ -65,6 +66,21 @@ std::string rule_of(const CheckInfo& info, Outcome outcome) {
     rule = "above " + with_unit(high, info.unit);
   if (!words.empty()) rule += fmt::format("{}{}", rule.empty() ? "" : "; ", words);
   return rule;
+}
+
+std::string limit_in_words(const Evidence& row, double factor) {
+  const Tolerance& t = info_of(row.check).tolerance;
+  const double limit = factor * row.limit;
+  if (!std::isfinite(limit)) return "–";
+  const bool below = std::isfinite(t.low) || std::isfinite(t.lowest);
+  const bool above = std::isfinite(t.high) || std::isfinite(t.highest);
+  for (const auto& [low, high] : {std::pair(t.low, t.high), std::pair(t.lowest, t.highest)})
+    if (std::isfinite(low) && std::isfinite(high) && (row.limit == low || row.limit == high))
+      return fmt::format("{:.4g} to {:.4g}", factor * low, factor * high);
+  // Without limits of the table: on which side of its limit a value passes follows from what came of the row.
+  const bool beyond = row.outcome == Outcome::kPassed ? row.value < row.limit : row.value > row.limit;
+  const bool at_most = below == above ? beyond : above;
+  return fmt::format("at {} {:.4g}", at_most ? "most" : "least", limit);
 }
 
 std::string source_of(const CheckInfo& info) {

@@ -15,6 +15,11 @@ namespace veridyn::estimation {
 /// always". Empty: never.
 [[nodiscard]] std::string rule_of(const CheckInfo& info, Outcome outcome);
 
+/// The limit of a row with its sense, "at least 0.3", "-0.1 to 0.1"; a dash where it has none. Number and sense are
+/// those of its value.
+/// @param factor  from the row's unit to the one shown
+[[nodiscard]] std::string limit_in_words(const Evidence& row, double factor = 1.0);
+
 /// "campaign: SampleEvidence: 0 alarms of 200 clean recordings".
 [[nodiscard]] std::string source_of(const CheckInfo& info);
 

@@ -173,16 +173,15 @@ std::vector<estimation::Parameter> judged_parameters(const TaskEstimate& e, esti
 
 /// The group's verdict in a sentence.
 std::string reason_of(const estimation::ParameterGroup& group, const std::vector<TaskOutcome>& tasks) {
-  const auto& why = group.judgement.parameters.decided_by;
-  const std::string first = why.empty() ? "it could not be judged" : why.front();
   if (group.verdict == estimation::GroupVerdict::kIdentified)
     return fmt::format(
         "{} of {} parameters identified from {} tasks",
         std::ranges::count(group.parameters, estimation::ParameterStatus::kIdentified, &estimation::Parameter::status),
         group.parameters.size(), std::count_if(tasks.begin(), tasks.end(), [](const auto& t) { return !t.hold_out; }));
-  return group.verdict == estimation::GroupVerdict::kEffective
-             ? fmt::format("predicts, but its values are no physical constants: {}", first)
-             : fmt::format("rejected: {}", first);
+  if (group.verdict == estimation::GroupVerdict::kEffective)
+    return "predicts, but its values are no physical constants";
+  const auto& why = group.judgement.parameters.decided_by;
+  return fmt::format("rejected: {}", why.empty() ? "it could not be judged" : why.front());
 }
 
 /// What to perform next, unless something other than too few tasks speaks against the parameters.

@@ -154,9 +154,22 @@ Cell measured_cell(double value, double sigma) {
 }
 
 void check(const Document& document) {
+  for (const Block& block : document.lead) std::visit([](const auto& each) { check_block(each); }, block);
   for (const Section& section : document.sections) {
     for (const Block& block : section.blocks) std::visit([](const auto& each) { check_block(each); }, block);
   }
+}
+
+Document with_captions_once(Document document) {
+  std::set<std::string> said;
+  const auto once = [&said](auto& block) {
+    if constexpr (requires { block.caption; })
+      if (!block.caption.empty() && !said.insert(block.caption).second) block.caption.clear();
+  };
+  for (Block& block : document.lead) std::visit(once, block);
+  for (Section& section : document.sections)
+    for (Block& block : section.blocks) std::visit(once, block);
+  return document;
 }
 
 std::vector<std::string> section_ids(const Document& document) {

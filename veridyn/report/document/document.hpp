@@ -365,7 +365,8 @@ struct Section {
   /// Link target of the table of contents; made from the title when empty, made unique in any case.
   std::string id = {};
   std::vector<Block> blocks = {};
-  bool folded = false;  ///< shown on a click (and always on paper)
+  bool folded = false;      ///< shown on a click (and always on paper)
+  std::string inside = {};  ///< said beside the title, also while folded; empty: how many tables and figures
 };
 
 /// A whole report.
@@ -373,6 +374,9 @@ struct Document {
   std::string title = {};
   std::string subtitle = {};
   Verdict verdict = {};
+  /// What an engineer of the field looks at first, on the first screen below the verdict: measured against model.
+  /// Figures stand side by side where the page is wide enough.
+  std::vector<Block> lead = {};
   std::vector<Fact> facts = {};
   std::vector<Section> sections = {};
   std::string generator = "Made with Veridyn";  ///< last line of the page: program and version
@@ -381,6 +385,9 @@ struct Document {
 /// Checks shapes: cells per row, samples per line and band, estimates per method, rows of a matrix.
 /// A violation is a programming error: asserts, naming the block.
 void check(const Document& document);
+
+/// The document with every caption at the first block that has it alone: what explains ten plots alike is said once.
+[[nodiscard]] Document with_captions_once(Document document);
 
 /// The sections' link targets: lower-case letters, digits and dashes, all different.
 [[nodiscard]] std::vector<std::string> section_ids(const Document& document);

@@ -10,7 +10,8 @@
 
 namespace veridyn::report {
 
-std::string to_html(const Document& document, const JsonOptions& options) {
+std::string to_html(Document all, const JsonOptions& options) {
+  const Document document = with_captions_once(std::move(all));
   const std::string_view page = internal::page();
   const std::string_view note = internal::page_has_figures()
                                     ? "The picture appears when the page may run its script."

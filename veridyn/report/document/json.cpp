@@ -352,16 +352,21 @@ std::string escape_markup(const std::string& text) {
 
 std::string to_json(const Document& document, const JsonOptions& options) {
   check(document);
+  const auto blocks_json = [&options](const std::vector<Block>& blocks) {
+    json all = json::array();
+    for (const Block& block : blocks)
+      all.push_back(std::visit([&options](const auto& each) { return block_json(each, options); }, block));
+    return all;
+  };
   const std::vector<std::string> ids = section_ids(document);
   json sections = json::array();
   for (std::size_t k = 0; k < document.sections.size(); ++k) {
     const Section& section = document.sections[k];
-    json blocks = json::array();
-    for (const Block& block : section.blocks) {
-      blocks.push_back(std::visit([&options](const auto& each) { return block_json(each, options); }, block));
-    }
-    sections.push_back(
-        {{"title", section.title}, {"id", ids[k]}, {"folded", section.folded}, {"blocks", std::move(blocks)}});
+    sections.push_back({{"title", section.title},
+                        {"id", ids[k]},
+                        {"folded", section.folded},
+                        {"inside", section.inside},
+                        {"blocks", blocks_json(section.blocks)}});
   }
   const json result = {{"format", "veridyn-report"},
                        {"version", 1},
@@ -373,6 +378,7 @@ std::string to_json(const Document& document, const JsonOptions& options) {
                          {"word", verdict_word(document.verdict)},
                          {"headline", document.verdict.headline},
                          {"lines", document.verdict.lines}}},
+                       {"lead", blocks_json(document.lead)},
                        {"facts", facts_json(document.facts)},
                        {"sections", std::move(sections)}};
   return escape_markup(result.dump(-1, ' ', true, json::error_handler_t::replace));

@@ -95,11 +95,12 @@ std::vector<double> round_for_storage(const std::vector<double>& values, double 
 ReadableNumber readable(double value, const std::string& unit, std::string_view name) {
   const bool rate_of_turns = name.find("frequency") != name.npos || name.find("bandwidth") != name.npos;
   if (rate_of_turns && unit == "rad/s") return {value / kFullTurn, "Hz"};
-  static const std::array<std::tuple<const char*, const char*, double>, 8> kReadable{{
+  static const std::array<std::tuple<const char*, const char*, double>, 9> kReadable{{
       {"rad", "deg", 1.0 / kDegree},
       {"rad/s", "deg/s", 1.0 / kDegree},
       {"rad/s^2", "deg/s^2", 1.0 / kDegree},
       {"s rad", "s deg", 1.0 / kDegree},
+      {"rad/g", "deg/g", 1.0 / kDegree},
       {"rad s^2/m", "deg/g", deg_per_g(1.0)},
       {"rad/(m/s^2)", "deg/g", deg_per_g(1.0)},
       {"m/s^2/rad", "m/s^2/deg", kDegree},

@@ -187,12 +187,15 @@ std::string static_html(const Document& document, std::string_view note_for_figu
   html += fmt::format("<section class=\"verdict {}\"><div><p class=\"word\">{}</p><h2>{}</h2>",
                       level_class(verdict.level), escape_html(verdict_word(verdict)), escape_html(verdict.headline));
   for (const std::string& line : verdict.lines) html += fmt::format("<p>{}</p>", escape_html(line));
-  html += "</div></section>\n" + facts_html(document.facts);
-  const std::vector<std::string> ids = section_ids(document);
+  html += "</div></section>\n";
   const BlockWriter write(note_for_figures);
+  for (const Block& block : document.lead) html += std::visit(write, block);
+  html += facts_html(document.facts);
+  const std::vector<std::string> ids = section_ids(document);
   for (std::size_t k = 0; k < document.sections.size(); ++k) {
     const Section& section = document.sections[k];
     html += fmt::format("<section id=\"{}\"><h2>{}</h2>\n", ids[k], escape_html(section.title));
+    if (!section.inside.empty()) html += fmt::format("<p>{}</p>\n", escape_html(section.inside));
     for (const Block& block : section.blocks) html += std::visit(write, block);
     html += "</section>\n";
   }

@@ -9,11 +9,17 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/statistics.hpp"
 #include "veridyn/report/figures/curves.hpp"
+#include "veridyn/report/figures/time_range.hpp"
 
 namespace veridyn::report {
 namespace {
 
 using namespace veridyn::aircraft;
+
+/// Of a figure of the first screen: height of a panel [CSS px], most windows of a figure that takes half of the width.
+constexpr int kLeadHeight = 84;
+constexpr std::size_t kLeadWindows = 3;
+constexpr double kLeadWindow_s = 20.0;  // longer ones show no single oscillation
 
 Line estimate_line(const Recording& recording, const std::string& channel, const char* label, double factor) {
   Line line{.name = label};
@@ -90,6 +96,16 @@ double rms_error(const Recording& estimate, const Recording& truth, const char* 
 bool same_windows(const std::vector<Window>& a, const std::vector<Window>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](const Window& i, const Window& j) { return i.from == j.from && i.to == j.to; });
+}
+
+/// Measured, and the model where its values predict; with its verdict where they are no physical constants.
+Panel coefficient_panel(const CoefficientResult& r) {
+  Panel panel{.label = r.verdict == estimation::GroupVerdict::kIdentified
+                           ? r.name
+                           : fmt::format("{} ({})", r.name, to_string(r.verdict))};
+  panel.lines.push_back({.name = "measured", .y = r.measured, .x = r.time, .role = Role::kMeasured});
+  if (estimation::usable(r.verdict)) panel.lines.push_back({.name = "model", .y = r.modelled, .x = r.time});
+  return panel;
 }
 
 /// Errors of the state estimates of a simulated flight alongside the best that the sensors allow.
@@ -181,6 +197,42 @@ Section flight_section(const FlightStudy& study, const PreparedFlight& flight) {
   return section;
 }
 
+std::optional<Window> flown_range(const PreparedFlight& flight) {
+  const std::vector<TimeSpan>& flown = flight.segments.airborne;
+  if (flown.empty()) return std::nullopt;
+  const double margin = std::max(2.0, 0.03 * (flown.back().end - flown.front().begin));
+  return Window{flown.front().begin - margin, flown.back().end + margin};
+}
+
+std::vector<TimeSeries> coefficient_lead(const FlightAnalysis& analysis, bool given) {
+  std::vector<TimeSeries> figures;
+  for (const Axis axis : {Axis::kLongitudinal, Axis::kLateral}) {
+    std::vector<Window> unseen, identification;
+    for (const PreparedFlight& flight : analysis.flights) {
+      const auto append = [&](std::vector<Window>& windows, const std::vector<TimeSpan>& spans) {
+        for (const TimeSpan& s : spans) windows.push_back({s.begin + flight.shift_s, s.end + flight.shift_s});
+      };
+      const AxisSegments& segments = flight.segments.of(axis);
+      append(unseen, given ? segments.excited : segments.holdout);
+      append(identification, segments.identification);
+    }
+    const bool held_out = !unseen.empty();
+    TimeSeries figure{.title = fmt::format("{}{}", axis == Axis::kLongitudinal ? "Longitudinal" : "Lateral",
+                                           given      ? ", given model"
+                                           : held_out ? ", held-out data"
+                                                      : ", nothing held out"),
+                      .windows = held_out ? std::move(unseen) : std::move(identification)};
+    for (const CoefficientResult& r : analysis.coefficients) {
+      if (r.axis != axis || r.time.empty()) continue;
+      figure.panels.push_back(coefficient_panel(r));
+      figure.panels.back().height = kLeadHeight;
+    }
+    if (!figure.panels.empty() && !figure.windows.empty())
+      figures.push_back(in_longest_windows(std::move(figure), kLeadWindows, kLeadWindow_s));
+  }
+  return figures;
+}
+
 Section coefficient_series_section(const FlightAnalysis& analysis) {
   Section section{.title = "Coefficients over time", .id = "series", .folded = true};
   for (const Axis axis : {Axis::kLongitudinal, Axis::kLateral}) {
@@ -195,11 +247,7 @@ Section coefficient_series_section(const FlightAnalysis& analysis) {
     }
     for (const CoefficientResult& r : analysis.coefficients) {
       if (r.axis != axis || r.time.empty()) continue;
-      Panel panel{.label = r.name};
-      panel.lines.push_back({.name = "measured", .y = r.measured, .x = r.time, .role = Role::kMeasured});
-      if (r.verdict == estimation::GroupVerdict::kIdentified)
-        panel.lines.push_back({.name = "model", .y = r.modelled, .x = r.time});
-      figure.panels.push_back(std::move(panel));
+      figure.panels.push_back(coefficient_panel(r));
     }
     if (!figure.panels.empty()) section.blocks.emplace_back(std::move(figure));
   }

@@ -106,9 +106,11 @@ Section coefficients_section(const FlightAnalysis& analysis) {
                           .status = status_of(r.verdict)});
   }
   section.blocks.emplace_back(std::move(table));
+  // Why one is rejected is in the rows of what was checked, why nothing was estimated is a warning.
   List reasons;
-  for (const CoefficientResult& r : analysis.coefficients) reasons.items.push_back(r.reason);
-  section.blocks.emplace_back(std::move(reasons));
+  for (const CoefficientResult& r : analysis.coefficients)
+    if (estimation::usable(r.verdict)) reasons.items.push_back(r.reason);
+  if (!reasons.items.empty()) section.blocks.emplace_back(std::move(reasons));
   return section;
 }
 

@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <optional>
+#include <string_view>
 #include <utility>
 
 #include "veridyn/core/constants.hpp"
@@ -135,7 +136,6 @@ Section rejected_section(const Analysis& analysis) {
   Section section{.title = "Rejected estimates (do not use)", .id = "rejected", .folded = true};
   for (const ParameterGroup& group : analysis.groups) {
     if (group.verdict != GroupVerdict::kRejected || group.methods.empty()) continue;
-    section.blocks.emplace_back(Paragraph{group.reason});
     add_comparison(section, analysis, group);
   }
   if (!section.blocks.empty()) {
@@ -164,31 +164,29 @@ Verdict verdict_of(const estimation::Estimate& estimate) {
 }
 
 Section evidence_section(const estimation::Estimate& estimate) {
+  using estimation::Outcome;
   Section section{.title = "What was checked", .id = "evidence", .folded = true};
-  if (estimate.evidence.empty()) return section;
-  Table table{.title = "Evidence",
-              .caption =
-                  "The grades above follow from these rows alone. A row bears on the data, the parameters or the "
-                  "prediction; one that bears on nothing is for information.",
-              .columns = {{.name = "of", .align = Align::kLeft},
-                          {.name = "check", .align = Align::kLeft},
-                          {.name = ""},
-                          {.name = "value", .digits = 3},
-                          {.name = "limit", .digits = 3},
-                          {.name = "as", .align = Align::kLeft},
-                          {.name = "what was seen", .align = Align::kLeft},
-                          {.name = "bears on", .align = Align::kLeft}}};
-  std::vector<const estimation::Evidence*> rows;
-  for (const estimation::Evidence& row : estimate.evidence) rows.push_back(&row);
-  std::ranges::stable_sort(rows, std::greater(), [](const estimation::Evidence* row) { return row->outcome; });
-  for (const estimation::Evidence* const each : rows) {
-    const estimation::Evidence& row = *each;
-    table.rows.push_back(
-        {.cells = {text_cell(row.about), text_cell(std::string(estimation::name_of(row))), outcome_cell(row),
-                   number_cell(row.value), number_cell(row.limit), text_cell(std::string(estimation::unit_of(row))),
-                   text_cell(estimation::says(row)), text_cell(estimation::list_of(row.bears_on))}});
+  const std::vector<estimation::Evidence>& rows = estimate.evidence;
+  const estimation::Reasons reasons = estimation::reasons_of(rows);
+  // Nothing: what did not pass and decides nothing.
+  const auto kind_of = [](const estimation::Evidence& row) {
+    return row.bears_on.empty() && !row.passed() ? std::nullopt : std::optional(row.outcome);
+  };
+  for (const std::optional<Outcome> kind :
+       {std::optional(Outcome::kFailed), std::optional(Outcome::kMissing), std::optional(Outcome::kCare),
+        std::optional(Outcome::kNotVerified), std::optional<Outcome>(), std::optional(Outcome::kPassed)}) {
+    Table table{.columns = evidence_columns()};
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      if (kind_of(rows[i]) == kind) table.rows.push_back(evidence_row(rows[i], reasons.quotes(i)));
+    if (table.rows.empty()) continue;
+    const std::string_view word = kind ? estimation::to_string(*kind) : "for information";
+    section.inside += fmt::format("{}{} {}", section.inside.empty() ? "" : ", ", table.rows.size(), word);
+    table.title = fmt::format("{} of {} {}", table.rows.size(), rows.size(), word);
+    section.blocks.emplace_back(std::move(table));
   }
-  section.blocks.emplace_back(std::move(table));
+  if (!section.blocks.empty())
+    section.blocks.insert(section.blocks.begin(), Paragraph{"The grades follow from these rows alone: each bears on "
+                                                            "the data, the parameters or the prediction."});
   return section;
 }
 

@@ -2,7 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <string>
 #include <utility>
+
+#include "veridyn/core/constants.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
+#include "veridyn/estimation/judgement/check_table.hpp"
+#include "veridyn/report/document/number_format.hpp"
 
 namespace veridyn::report {
 
@@ -33,15 +40,31 @@ Row parameter_row(const estimation::Parameter& p, double factor, std::string uni
           .status = status_of(p.status)};
 }
 
-Cell outcome_cell(const estimation::Evidence& row) {
-  using estimation::Outcome;
-  const std::string word(row.bears_on.empty() && !row.passed() ? "note" : estimation::to_string(row.outcome));
-  const Status status = row.bears_on.empty() && !row.passed()  ? Status::kNone
-                        : row.outcome == Outcome::kPassed      ? Status::kGood
-                        : row.outcome == Outcome::kNotVerified ? Status::kNone
-                        : row.outcome == Outcome::kFailed      ? Status::kBad
-                                                               : Status::kCaution;
-  return {.text = word, .status = status};
+std::vector<Column> evidence_columns() {
+  return {{.name = "check", .align = Align::kLeft},         {.name = "value", .align = Align::kRight, .digits = 3},
+          {.name = "limit", .align = Align::kLeft},         {.name = "unit", .align = Align::kLeft},
+          {.name = "what was seen", .align = Align::kLeft}, {.name = "bears on", .align = Align::kLeft}};
+}
+
+Row evidence_row(const estimation::Evidence& row, bool said) {
+  const ReadableNumber unit = readable(1.0, std::string(estimation::unit_of(row)));
+  estimation::Evidence shown = row;
+  for (double* number : {&shown.value, &shown.sigma, &shown.limit}) *number *= unit.value;
+  const std::string name(estimation::name_of(row));
+  Cell value = number_cell(shown.value);
+  if (row.sigma > 0.0)
+    value.text = fmt::format("{} ± {}", format_number(shown.value, 3), format_number(shown.sigma, 2));
+  std::string limit;  // on one line
+  for (const char c : estimation::limit_in_words(row, unit.value))
+    limit += c == ' ' ? std::string("\u00a0") : std::string(1, c);
+  const bool on_all =
+      std::ranges::all_of(estimation::kPurposes, [&](estimation::Purpose p) { return row.bears_on.contains(p); });
+  return {.cells = {text_cell(name.find(row.about) != name.npos ? name : fmt::format("{}: {}", row.about, name)),
+                    std::move(value), text_cell(std::move(limit)), text_cell(unit.unit),
+                    text_cell(said ? "see the top of this page" : estimation::says(row)),
+                    text_cell(on_all                 ? "all"
+                              : row.bears_on.empty() ? "nothing"
+                                                     : estimation::list_of(row.bears_on))}};
 }
 
 std::string change_words(const estimation::Change& change) {

@@ -24,8 +24,13 @@ namespace veridyn::report {
 /// A row of these columns without the truth. @param factor from the estimate's unit to `unit`
 [[nodiscard]] Row parameter_row(const estimation::Parameter& parameter, double factor, std::string unit);
 
-/// What came of a check as a badge; "note" where it bears on nothing.
-[[nodiscard]] Cell outcome_cell(const estimation::Evidence& row);
+/// The columns of a check: "check, value, limit, unit, what was seen, bears on".
+[[nodiscard]] std::vector<Column> evidence_columns();
+
+/// A row of these columns: value with its standard error, and the limit, in the unit that people read ("at most 5
+/// deg").
+/// @param said  whether its sentence stands on the first screen, which is not repeated
+[[nodiscard]] Row evidence_row(const estimation::Evidence& row, bool said);
 
 /// "innovation moved by 3.1 sigma": what was noticed.
 [[nodiscard]] std::string change_words(const estimation::Change& change);

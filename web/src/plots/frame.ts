@@ -142,7 +142,7 @@ export function axis(side: 'x' | 'y', options: AxisOptions): uPlot.Axis {
     side: side === 'x' ? 2 : 3,
     size: options.size,
     gap: 6,
-    space: (plot) => (side === 'y' ? 30 : plot.width < 420 ? 48 : 70),
+    space: (plot) => (side === 'y' ? (plot.height < 110 ? 18 : 30) : plot.width < 420 ? 48 : 70),
     font: kFont,
     stroke: () => palette().soft_ink,
     grid: { stroke: () => palette().grid, width: 1 },

@@ -5,6 +5,7 @@ import { palette } from '../theme';
 import { axis, clipped, Looks, mount, OrdinateWidth, translucent, uPlot } from './frame';
 import { lower_bound, median_spacing, sample_at, with_gaps } from './gaps';
 import { legend_entry, range_button, SeriesSwitch } from './legend';
+import { in_rows } from './label_rows';
 import { ordinate_of, type Drawn, type Ordinate } from './ordinate';
 import { stacked, time_series_picture, type PanelPicture } from './picture';
 import { window_rows, type WindowAxis } from './windows';
@@ -34,6 +35,12 @@ function draw_spans(plot: uPlot, figure: TimeSeries, with_labels: boolean): void
   const colours = palette();
   clipped(plot, (context) => {
     const { bbox } = plot;
+    const pad = 5 * uPlot.pxRatio;
+    const row_height = 13 * uPlot.pxRatio;
+    context.font = `600 ${Math.round(10.5 * uPlot.pxRatio)}px system-ui, sans-serif`;
+    context.textBaseline = 'top';
+    context.textAlign = 'left';
+    const labels: { label: string; left: number; width: number }[] = [];
     for (const span of figure.spans) {
       const left = Math.max(bbox.left, plot.valToPos(span.from, 'x', true));
       const right = Math.min(bbox.left + bbox.width, plot.valToPos(span.to, 'x', true));
@@ -41,12 +48,13 @@ function draw_spans(plot: uPlot, figure: TimeSeries, with_labels: boolean): void
       context.fillStyle = colours.spans[span.tone];
       context.fillRect(left, bbox.top, right - left, bbox.height);
       if (!with_labels || span.label === '') continue;
-      context.font = `600 ${Math.round(10.5 * uPlot.pxRatio)}px system-ui, sans-serif`;
-      context.fillStyle = colours.soft_ink;
-      context.textBaseline = 'top';
-      context.textAlign = 'left';
-      const pad = 5 * uPlot.pxRatio;
-      if (context.measureText(span.label).width + 2 * pad < right - left) context.fillText(span.label, left + pad, bbox.top + pad);
+      const width = context.measureText(span.label).width + 2 * pad;
+      if (width < right - left) labels.push({ label: span.label, left, width });
+    }
+    context.fillStyle = colours.soft_ink;
+    for (const { label, left, row } of in_rows(labels)) {
+      const top = pad + row * row_height;
+      if (top + row_height < bbox.height) context.fillText(label, left + pad, bbox.top + top);
     }
   });
 }

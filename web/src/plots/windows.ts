@@ -43,7 +43,9 @@ export class WindowAxis {
       const scale = (each.to - each.from) / (each.end - each.begin);
       const time = (position: number) => each.from + (position - each.begin) * scale;
       const count = Math.max(1, (((to - from) / (high - low)) * width) / spacing);
-      const { ticks, step } = nice_ticks(time(from), time(to), count);
+      // No window without a time.
+      let { ticks, step } = nice_ticks(time(from), time(to), count);
+      for (let more = 2; ticks.length === 0 && more < 10; ++more) ({ ticks, step } = nice_ticks(time(from), time(to), more * count));
       const texts = format_ticks(ticks, step);
       ticks.forEach((tick, k) => {
         positions.push(each.begin + (tick - each.from) / scale);

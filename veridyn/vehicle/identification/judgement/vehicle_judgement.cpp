@@ -240,10 +240,9 @@ VehicleJudgement judge_vehicle(const VehicleProblem& problem, const VehicleFindi
                        : ", without a hold-out to validate on";
   if (out.verdict != estimation::GroupVerdict::kIdentified) {
     const std::vector<std::string>& why = out.judgement.parameters.decided_by;
-    const std::string first = why.empty() ? "it could not be judged" : why.front();
     out.reason = out.verdict == estimation::GroupVerdict::kEffective
-                     ? fmt::format("predicts{}, but its values are no physical constants: {}", holdout.substr(1), first)
-                     : fmt::format("rejected: {}", first);
+                     ? fmt::format("predicts{}, but its values are no physical constants", holdout.substr(1))
+                     : fmt::format("rejected: {}", why.empty() ? "it could not be judged" : why.front());
     return out;
   }
   out.reason =
