@@ -263,7 +263,7 @@ recording::DelayReport steering_late(double delay_s = -0.09, double sigma_s = 0.
 }
 
 KnownByModel with_delay(double value, double sigma) {
-  return {.steer_delay = estimation::Parameter{.name = "steer_delay", .value = value, .sigma = sigma}};
+  return {.delay = DelayByModel{.value_s = value, .sigma_s = sigma}};
 }
 
 // Limits are 0.004 s either way, with care, and 0.02 s, failed; what three standard errors allow is within them.
