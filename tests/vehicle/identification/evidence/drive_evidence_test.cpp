@@ -282,6 +282,12 @@ TEST(DriveEvidence, JudgesTheDelayThatTheModelFinds) {
     EXPECT_EQ(advice_of(row).empty(), outcome == Outcome::kPassed) << value << " +- " << sigma;
   }
   EXPECT_THAT(says(steering_row(steering_late(), with_delay(-0.024, 0.001))), HasSubstr("steer is 24.0 +- 1.0 ms"));
+  KnownByModel accel = with_delay(0.1, 0.001);
+  accel.delay->channel = DriveUnknown::kAccelYDelay;
+  EXPECT_EQ(steering_row(steering_late(), accel).about, "accel_y");
+  EXPECT_THAT(advice_of(steering_row(steering_late(), accel)), HasSubstr("identify.estimate with \"accel_y_delay\""));
+  accel.delay->value_s = -0.1;
+  EXPECT_EQ(steering_row(steering_late(), accel).about, "steer, yaw_rate") << "no sensor is early";
   // A delay that the model does not determine leaves the signals.
   for (const double unknown : {kInfinity, kNaN})
     EXPECT_EQ(steering_row(steering_late(), with_delay(0.0, unknown)).check, Check::kSteeringOrder);

@@ -117,7 +117,11 @@ Evidence steering_row(const recording::DelayReport& by_signals, const KnownByMod
   Evidence row = row_of(Check::kSteeringDelay, "accel_y", known.delay->value_s, known.delay->sigma_s);
   row.with("unknown", std::string(kDriveUnknownNames[known.delay->channel]));
   if (known.delay->channel != DriveUnknown::kAccelYDelay) return of_steering(std::move(row));
-  return with_late(std::move(row), "accel_y", known.delay->value_s, "steer and yaw_rate");
+  // No sensor is early: the others are late then.
+  if (!(known.delay->value_s < 0.0))
+    return with_late(std::move(row), "accel_y", known.delay->value_s, "steer and yaw_rate");
+  row.about = "steer, yaw_rate";
+  return with_late(std::move(row), "steer and yaw_rate", -known.delay->value_s, "accel_y");
 }
 
 bool contradicts_itself(const DriveFindings& findings) {
