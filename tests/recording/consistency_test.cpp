@@ -230,6 +230,40 @@ TEST(Consistency, SaysNothingWhereNothingMovesAndNamesAForeignSignal) {
   EXPECT_THAT(said(c, foreign), Contains("accel_x shows another motion"));
 }
 
+// A fifth of what roads make, but clearly one motion.
+TEST(Consistency, NamesFaultsOfLittleMotionThatTheChannelsHaveInCommon) {
+  const auto little = [](unsigned seed) {
+    DriveMotion m = drive(seed);
+    scale(m, {kGyroZ, kSteer}, 0.05);  // r u of 0.1 m/s^2
+    for (const InertialChannel c : {kYaw, kRoll, kPitch, kGyroX, kGyroY, kAccelZ, kPosX, kPosY}) m.signals[c].clear();
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal(0.0, 0.01);
+    for (std::size_t k = 0; k < m.grid.count; ++k)
+      m.signals[kAccelY][k] = m.signals[kGyroZ][k] * m.signals[kSpeed][k] + normal(random);
+    return m;
+  };
+  DriveMotion reversed = little(11);
+  scale(reversed, {kAccelY}, -1.0);
+  const Consistency found = check_consistency(reversed, {.wheelbase = 2.7});
+  EXPECT_THAT(said(found, reversed), Contains(HasSubstr("accel_y has the wrong sign")));
+  DriveMotion exchanged = little(12);
+  std::swap(exchanged.signals[kAccelX], exchanged.signals[kAccelY]);
+  const Consistency axes = check_consistency(exchanged, {.wheelbase = 2.7});
+  EXPECT_THAT(said(axes, exchanged), Contains(HasSubstr("exchanged")));
+  const DriveMotion right = little(13);
+  EXPECT_FALSE(check_consistency(right, {.wheelbase = 2.7}).is_off());
+}
+
+// No body leans by 14 deg/g: what accel_y reads too much then may as well be a yaw rate that reads too little.
+TEST(Consistency, TakesNoMoreForALeanThanBodiesLean) {
+  DriveMotion m = drive(14);
+  scale(m, {kAccelY}, 1.25);
+  for (const InertialChannel c : {kYaw, kPosX, kPosY, kSteer}) m.signals[c].clear();
+  const Consistency c = check_consistency(m);
+  ASSERT_GT(c.explanations.size(), 1U) << testing::PrintToString(said(c, m));
+  for (const auto& faults : c.explanations) EXPECT_EQ(faults.front().cause, Cause::kScale);
+}
+
 TEST(Consistency, OfNothingThereIsNothing) {
   EXPECT_TRUE(check_consistency({}).relations.empty());
   EXPECT_TRUE(check_consistency(drive_motion(Recording{})).relations.empty());

@@ -44,6 +44,12 @@ TEST(Delays, SmallOnesAreLeftAloneAndAnOppositeSignIsNamed) {
   const DelayReport opposite = shared_delay("gps", "accelerometer", {{a, turned}}, kLivelyRate_Hz, {});
   EXPECT_FALSE(opposite.applied());
   EXPECT_EQ(opposite.finding, DelayFinding::kOppositeSign);
+  // What has little to do with each other has no sign.
+  const std::vector<double> b = lively(3000, "b");
+  for (std::size_t k = 0; k < turned.size(); ++k) turned[k] = b[k] - 0.3 * a[k];
+  const DelayReport unrelated = shared_delay("gps", "accelerometer", {{a, turned}}, kLivelyRate_Hz, {});
+  EXPECT_LT(unrelated.correlation, -0.1);
+  EXPECT_EQ(unrelated.finding, DelayFinding::kNoPeak);
 }
 
 // An aircraft answers the gust that its vane shows, against it and late: correlation finds a delay where there is none.

@@ -39,6 +39,10 @@ TEST(Delays, EffectOfACauseIsAsLateAsTheLagThatExplainsItBest) {
                                          1.0 / kLivelyRate_Hz, {}, silent);
   EXPECT_FALSE(early.applied());
   EXPECT_EQ(early.finding, DelayFinding::kBeforeCause);
+  // Beyond the search: where no lag inside explains much, the last one is before the cause as well.
+  const DelayReport earlier = effect_delay("elevator", "angular acceleration", cause, {later(cause, 30)}, {{other}},
+                                           1.0 / kLivelyRate_Hz, {}, silent);
+  EXPECT_EQ(earlier.finding, DelayFinding::kBeforeCause);
   const DelayReport none = effect_delay("rudder", "angular acceleration", effect, {lively(6000, "x")}, {{other}},
                                         1.0 / kLivelyRate_Hz, {}, silent, "surface");
   EXPECT_EQ(none.finding, DelayFinding::kLittleExplained);

@@ -25,6 +25,9 @@ TEST(TimeOrder, IsEarlyBeyondLimitAndChance) {
   EXPECT_FALSE(is_early(report(0.2, 0.001), {})) << "late, as sensors are";
   EXPECT_FALSE(is_early(report(-0.05, 0.0), {.early_s = 0.08}));
   EXPECT_FALSE(is_early(report(-0.05, 0.01, -0.9), {}));
+  DelayReport open = report(-0.05, 0.01);
+  open.finding = DelayFinding::kNoPeak;
+  EXPECT_FALSE(is_early(open, {})) << "not determined";
 }
 
 TEST(TimeOrder, NamesWhatIsEarlyOrOpposite) {

@@ -25,6 +25,8 @@ using Factors = PerInertialChannel<double>;
 constexpr std::size_t kMostFaults = 3;  // looked for together
 /// Ratios of steering gears that most cars have.
 constexpr double kLeastUsualRatio = 11.0, kMostUsualRatio = 20.0;
+/// What accel_y reads of the turning where the body leans by 11 deg/g; cars lean by 3 to 7.
+constexpr double kMostLean = 1.2;
 
 /// A fault that may be, how unlikely it is besides others (a wrong unit or sign counts 1), and the factors that it has.
 struct Suspect {
@@ -124,8 +126,8 @@ class Explainer {
       }
     }
     // A body that leans, a road across and a vehicle that slides show more or less than it turns.
-    const estimation::Tolerance& lateral = estimation::info_of(Check::kLateralAcceleration).tolerance;
-    if (m_.has(kAccelY)) suspects_.push_back({{Cause::kMissingTerm, {kAccelY}}, 1.3, lateral.lowest, lateral.highest});
+    const double least = estimation::info_of(Check::kLateralAcceleration).tolerance.lowest;
+    if (m_.has(kAccelY)) suspects_.push_back({{Cause::kMissingTerm, {kAccelY}}, 1.3, least, kMostLean});
     constexpr double kScale = 1.6, kAnotherMotion = 2.5;
     for (const InertialChannel c : enumerators<InertialChannel, kInertialChannels>()) {
       // Of an angle a scale that is no unit's is no fault that sensors have; nor is that of one coordinate.
@@ -272,18 +274,37 @@ std::vector<Exchange> exchanges_in(const DriveMotion& m) {
   return all;
 }
 
+DriveMotion led_back(DriveMotion m, const Exchange& e) {
+  const PerInertialChannel<std::vector<double>> recorded = m.signals;
+  for (std::size_t i = 0; i < e.to.size(); ++i) m.signals[e.to[i]] = recorded[e.from[i]];
+  return m;
+}
+
+/// What another channel shows as one motion has moved, however little.
+void mark_shown(const DriveMotion& m, const ConsistencyOptions& options, std::vector<ChannelRelation>& relations) {
+  if (std::ranges::all_of(relations, [](const ChannelRelation& r) { return r.moved(); })) return;
+  for (const Exchange& e : exchanges_in(m)) {
+    const std::vector<ChannelRelation> others = drive_relations(led_back(m, e), options);
+    for (ChannelRelation& r : relations) {
+      const bool reading_alone =
+          std::ranges::all_of(e.to, [&](InertialChannel c) { return c == r.channel || r.power[c] == 0; });
+      const auto other = std::ranges::find(others, r.check, &ChannelRelation::check);
+      r.shown = r.shown || (reading_alone && other != others.end() && other->is_one_motion());
+    }
+  }
+}
+
 /// Where two signals that move are unrelated: the exchange of channels that explains more than anything else.
 void explain_by_exchange(const DriveMotion& m, const ConsistencyOptions& options, Consistency& result, double best) {
   for (const Exchange& e : exchanges_in(m)) {
-    DriveMotion led_back = m;
-    for (std::size_t i = 0; i < e.to.size(); ++i) led_back.signals[e.to[i]] = m.signals[e.from[i]];
-    const std::vector<ChannelRelation> relations = drive_relations(led_back, options);
+    const DriveMotion right = led_back(m, e);
+    const std::vector<ChannelRelation> relations = drive_relations(right, options);
     ChannelFault fault{Cause::kAxis, e.to};
     fault.from = e.from;
     std::vector<std::vector<ChannelFault>> found{{}};
     double cost = 1.0;
     if (std::ranges::any_of(relations, is_off)) {
-      auto [others, more] = Explainer(led_back, relations).run();
+      auto [others, more] = Explainer(right, relations).run();
       found = std::move(others);
       cost += more;
     }
@@ -306,6 +327,7 @@ std::string source_of(InertialChannel c, const ChannelNames& names, std::span<co
 
 bool ChannelRelation::moved(double reading_factor, double truth_factor) const {
   constexpr double kManyTimes = 5.0;
+  if (shown || is_one_motion()) return true;
   return truth_rms > std::abs(truth_factor) * least || reading_rms > std::abs(reading_factor) * kManyTimes * least;
 }
 
@@ -328,6 +350,7 @@ bool Consistency::is_off() const { return std::ranges::any_of(relations, recordi
 
 Consistency check_consistency(const DriveMotion& motion, const ConsistencyOptions& options) {
   Consistency result{.relations = drive_relations(motion, options)};
+  mark_shown(motion, options, result.relations);
   if (!result.is_off()) return result;
   auto [explanations, cost] = Explainer(motion, result.relations).run();
   result.explanations = std::move(explanations);

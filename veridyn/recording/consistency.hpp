@@ -21,19 +21,23 @@ struct ChannelRelation {
   double seconds = 0.0;                       ///< that were compared
   double truth_rms = 0.0, reading_rms = 0.0;  ///< of the motion that was compared
   double least = 0.0;                         ///< rms from which there is enough of it to say anything
-  bool verified = false;                      ///< the range is narrow enough to verify a scale
-  PerInertialChannel<int> power = {};         ///< to which power an error of each channel's scale is in the ratio
+  bool shown = false;     ///< a channel that may be exchanged with this one shows the motion that it is compared with
+  bool verified = false;  ///< the range is narrow enough to verify a scale
+  PerInertialChannel<int> power = {};  ///< to which power an error of each channel's scale is in the ratio
   estimation::Tolerance tolerance = {};
   /// A right channel may also read nothing of it: a vertical acceleration that is given without gravity.
   bool may_be_none = false;
 
   [[nodiscard]] double middle() const { return 0.5 * (low + high); }
-  /// Whether there was enough of the motion to say anything; a reading that is many times larger moves even where what
-  /// it is compared with does not.
+  /// Whether there was enough of the motion to say anything: more than roads and noise make, or less that both or
+  /// another channel show as one motion. A reading that is many times larger moves even where what it is compared with
+  /// does not.
   /// @param reading_factor, truth_factor  by which the two are too large
   [[nodiscard]] bool moved(double reading_factor = 1.0, double truth_factor = 1.0) const;
   /// Of a ratio somewhere from `from` to `to`.
   [[nodiscard]] estimation::Outcome outcome_for(double from, double to) const;
+  /// Whether nine tenths of both are common: by chance only of a handful of rows.
+  [[nodiscard]] bool is_one_motion() const { return correlation * correlation > 0.9; }
   /// Square of the correlation below which two signals that move are not one motion.
   [[nodiscard]] bool unrelated() const { return moved() && correlation * correlation < 0.25; }
   /// By range and correlation; passed where nothing moved.

@@ -173,11 +173,12 @@ DelayReport shared_delay(std::string group, std::string reference, const std::ve
   const double sigma = std::hypot(found.sigma_s, doubt, bias_by_answers(pairs, found));
   DelayReport report{std::move(group), std::move(reference), found.delay_s, sigma, found.correlation};
   const double least = std::max(options.min_delay_s, estimation::kBeyondChance * sigma);
-  if (found.correlation < 0.0) {
-    report.finding = DelayFinding::kOppositeSign;
-  } else if (!found.determined) {
+  // What correlates little has no sign either: of a vane that shows gusts the aircraft's answer is the opposite.
+  if (!found.determined) {
     report.finding = DelayFinding::kNoPeak;
     report.why = found.reason;
+  } else if (found.correlation < 0.0) {
+    report.finding = DelayFinding::kOppositeSign;
   } else if (std::abs(found.delay_s) < least) {
     report.finding = finding_of_small(least, options);
   } else {

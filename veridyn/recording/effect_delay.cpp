@@ -292,9 +292,14 @@ DelayReport common_effect_delay(std::string cause_name, std::string effect_name,
     return report;
   }
   const bool outweighed = by_cause < 1.0 - top;
+  // Where causes and others move together two lags may explain as much: the top's own error does not show that.
+  const auto gain = [&](const std::vector<double>& share) {
+    return share[at] - share[static_cast<std::size_t>(longest)];
+  };
+  const bool better_than_none = gain(explained) >= kBetterThanNone * jackknife_sigma(shares, gain);
   if (best == 0 && !outweighed) {
     report.delay_s = static_cast<double>(first) * step_s;
-    report.finding = DelayFinding::kBeforeCause;
+    report.finding = better_than_none ? DelayFinding::kBeforeCause : DelayFinding::kNoneAsGood;
     return report;
   }
   if (best == 0 || at + 1 == explained.size()) {
@@ -315,19 +320,13 @@ DelayReport common_effect_delay(std::string cause_name, std::string effect_name,
     report.finding = DelayFinding::kInDoubt;
     return report;
   }
-  // Where causes and others move together two lags may explain as much: the top's own error does not show that.
-  const auto gain = [&](const std::vector<double>& share) {
-    return share[at] - share[static_cast<std::size_t>(longest)];
-  };
   const double least = std::max(options.min_delay_s, estimation::kBeyondChance * report.sigma_s);
-  if (report.delay_s < -least) {
-    report.finding = DelayFinding::kBeforeCause;
-  } else if (report.delay_s < least) {
+  if (std::abs(report.delay_s) < least) {
     report.finding = finding_of_small(least, options);
-  } else if (gain(explained) < kBetterThanNone * jackknife_sigma(shares, gain)) {
+  } else if (!better_than_none) {
     report.finding = DelayFinding::kNoneAsGood;
   } else {
-    report.finding = DelayFinding::kApplied;
+    report.finding = report.delay_s < 0.0 ? DelayFinding::kBeforeCause : DelayFinding::kApplied;
   }
   return report;
 }

@@ -30,7 +30,7 @@ Evidence order_row(const DelayReport& report, const TimeOrder& order, Outcome ou
 
 bool is_early(const DelayReport& report, const TimeOrder& order) {
   const double limit = std::max(order.early_s, kBeyondChance * report.sigma_s);
-  return report.delay_s < -limit && report.correlation > 0.0;
+  return report.determined() && report.delay_s < -limit && report.correlation > 0.0;
 }
 
 bool is_doubtful(const DelayReport& report, const TimeOrder& order) {

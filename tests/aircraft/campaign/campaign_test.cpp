@@ -8,9 +8,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <map>
 #include <mutex>
 
+#include "tests/support/clean_recordings.hpp"
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/estimation/judgement/check.hpp"
@@ -25,6 +25,7 @@ using aircraft::testing::faults;
 using aircraft::testing::Finding;
 using aircraft::testing::Identified;
 using aircraft::testing::Trial;
+using estimation::Check;
 
 /// All faults, or those whose name holds the text of VERIDYN_FAULTS.
 std::vector<Fault> chosen_faults() {
@@ -131,53 +132,23 @@ Identified counted(const std::string& aircraft, std::uint64_t seed, testing::Ass
   return kept;
 }
 
-/// In how many flights a row raised an alarm.
-struct Alarms {
-  std::size_t care = 0, failed = 0;
-};
-
-/// Of every row that is in some flight and bears on a grade (others are notes); several rows of a name in one flight
-/// count once.
-std::map<std::string, Alarms> alarms_of(const std::vector<Identified>& flights) {
-  using estimation::Outcome;
-  std::map<std::string, Alarms> all;
-  for (const Identified& flight : flights) {
-    std::map<std::string, Outcome> worst;
-    for (const estimation::Evidence& row : flight.analysis.estimate.evidence) {
-      if (row.bears_on.empty()) continue;
-      const Outcome outcome = row.outcome == Outcome::kMissing ? Outcome::kPassed : row.outcome;
-      Outcome& so_far = worst[std::string(estimation::name_of(row))];
-      so_far = std::max(so_far, outcome);
-    }
-    for (const auto& [name, outcome] : worst) {
-      Alarms& alarms = all[name];
-      alarms.care += outcome == Outcome::kCare ? 1 : 0;
-      alarms.failed += outcome == Outcome::kFailed ? 1 : 0;
-    }
-  }
-  return all;
-}
-
 /// The largest share of clean flights in which a row may raise an alarm. Rows that judge prediction are no false alarms
 /// where gusts, which a model is not given, cost it its lead, or where the values that the study gives are better: here
 /// they are the truth. Rows of the recording are tested at the level of a few in a thousand, those of a coefficient six
 /// times a flight.
-double stated_rate(const std::string& row) {
-  static const std::map<std::string, double> others{{"flown over the hold-out", 1.0},
-                                                    {"flown against the last value", 1.0},
-                                                    {"hold-out", 1.0},
-                                                    {"hold-out against the start values", 1.0},
-                                                    {"bands on the hold-out", 1.0},
-                                                    {"agreement of the flight's parts", 0.06}};
-  const auto found = others.find(row);
-  return found == others.end() ? 0.02 : found->second;
-}
-
-std::string alarm_table(const std::map<std::string, Alarms>& alarms, std::size_t flights) {
-  std::string table = fmt::format("\n| row | with care | failed | of |\n|---|---|---|---|\n");
-  for (const auto& [name, count] : alarms)
-    table += fmt::format("| {} | {} | {} | {} |\n", name, count.care, count.failed, flights);
-  return table;
+double stated_rate(Check check) {
+  switch (check) {
+    case Check::kFlownOverHoldOut:
+    case Check::kFlownAgainstLast:
+    case Check::kCoefficientHoldOut:
+    case Check::kHoldOutAgainstStart:
+    case Check::kHoldOutBands:
+      return 1.0;
+    case Check::kPartsOfFlight:
+      return 0.06;
+    default:
+      return 0.02;
+  }
 }
 
 // Clean flights of all built-in aircraft, from calm to moderate turbulence. Writes coverage.md: what is graded yes,
@@ -196,14 +167,19 @@ TEST(CampaignSoak, CleanFlightsAreGradedYesAndIntervalsHoldTheTruth) {
       << "| aircraft | flights | data yes | data and parameters yes | coverage, noise given | coverage, noise measured "
          "|\n|---|---|---|---|---|---|\n";
   Coverage all;
-  std::vector<Identified> flown;
+  test::CleanRecordings clean;
   for (std::size_t i = 0; i < aircraft.size(); ++i) {
     Coverage given, measured;
     for (std::size_t k = i; k < flights.size(); k += aircraft.size()) {
       given.add(flights[k][0]);
       measured.add(flights[k][1]);
       all.add(flights[k][0]);
-      if (!flights[k][0].refused) flown.push_back(flights[k][0]);
+      if (flights[k][0].refused) {
+        ++clean.refused;
+        continue;
+      }
+      const auto& estimate = flights[k][0].analysis.estimate;
+      clean.add(estimate.evidence, estimate.judgement);
     }
     table << fmt::format("| {} | {} | {} | {} | {} | {} |\n", aircraft[i], given.flights, given.data_yes,
                          given.both_yes, given.text(), measured.text());
@@ -214,10 +190,9 @@ TEST(CampaignSoak, CleanFlightsAreGradedYesAndIntervalsHoldTheTruth) {
   table << fmt::format("\n{} data yes, {} data and parameters yes, of {}\n", all.data_yes, all.both_yes, all.flights);
   EXPECT_GE(static_cast<double>(all.data_yes), 0.95 * count);
   EXPECT_GE(static_cast<double>(all.both_yes) + std::sqrt(0.95 * 0.05 * count), 0.95 * count);
-  const std::map<std::string, Alarms> alarms = alarms_of(flown);
-  table << alarm_table(alarms, flown.size());
-  for (const auto& [name, n] : alarms)
-    EXPECT_LE(static_cast<double>(n.care + n.failed), stated_rate(name) * count) << name;
+  table << clean.table();
+  for (const auto& [check, n] : clean.alarms)
+    EXPECT_LE(static_cast<double>(n.care + n.failed), stated_rate(check) * count) << to_string(check);
 }
 
 // The two aircraft whose coverage is furthest from 95 % over 25 flights, over 100 others. Writes coverage_of_two.md.

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "tests/support/clean_recordings.hpp"
 #include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::vehicle {
@@ -63,6 +64,28 @@ TEST(DriveCampaignSoak, CatchesFaultsInAllVehicles) {
   };
   EXPECT_GE(count(Finding::kNamed), 0.8 * (count(Finding::kNamed) + count(Finding::kMisnamed)));
   EXPECT_EQ(count(Finding::kMissed), 0.0);
+}
+
+// 200 drives without a fault, other seeds than those of the faults. Writes clean_drives.md: alarms by row.
+TEST(DriveCampaignSoak, CleanDrivesAreGradedYes) {
+  if (std::getenv("VERIDYN_SOAK") == nullptr) GTEST_SKIP() << "a long-running campaign; `make soak` runs it";
+  constexpr std::size_t kDrives = 200;
+  const std::vector<std::string>& vehicles = campaign_vehicles();
+  std::vector<IdentifiedDrive> drives(kDrives);
+  numerics::parallel_for(kDrives, 0, [&](std::size_t i) {
+    IdentifiedDrive drive = testing::identified(campaign_drive(vehicles[i % vehicles.size()], 2 + i / vehicles.size()));
+    drives[i].refused = drive.refused;
+    drives[i].analysis.estimate = std::move(drive.analysis.estimate);
+  });
+  test::CleanRecordings clean;
+  for (const IdentifiedDrive& drive : drives) {
+    clean.refused += drive.refused ? 1 : 0;
+    if (!drive.refused) clean.add(drive.analysis.estimate.evidence, drive.analysis.estimate.judgement);
+  }
+  std::ofstream("clean_drives.md") << clean.table();
+  EXPECT_EQ(clean.refused, 0u);
+  EXPECT_GE(static_cast<double>(clean.data_yes), 0.97 * static_cast<double>(kDrives))
+      << ::testing::PrintToString(clean.sentences);
 }
 
 /// Parameters graded yes of gentle drives of rolling cars, and which of them are more than a tenth off with the truth

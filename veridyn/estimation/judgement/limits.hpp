@@ -31,7 +31,7 @@ inline constexpr double kHoldOutFailed = 0.3;
 /// (2 of 199 clean flights: docs/judgement.md.)
 inline constexpr double kMostUnmodelled = 0.1;
 
-/// Variance inflation from which regressors move together (Klein & Morelli 2006, section 5.5).
+/// Variance inflation from which regressors move together (Marquardt 1970, Technometrics 12(3)).
 inline constexpr double kMostInflation = 10.0;
 
 }  // namespace veridyn::estimation

@@ -113,6 +113,10 @@ TEST(ContradictedFlight, RowIsAboutTheSensorThatWasRefusedWhereNoOtherIsFoundWro
                                      row_of(Check::kSensorGain, "gyro", Outcome::kPassed),
                                      row_of(Check::kAccelerometerBias, "accelerometer", Outcome::kFailed)};
   EXPECT_EQ(contradiction_row(contradiction, 10.0, causes).about, "accelerometer");
+  // One that is wrong with care is the cause where no other is worse.
+  const std::vector<Evidence> with_care{row_of(Check::kSensorGain, "ground velocity", Outcome::kCare), causes.back()};
+  EXPECT_EQ(contradiction_row(contradiction, 10.0, with_care).about, "accelerometer");
+  EXPECT_EQ(contradiction_row(contradiction, 10.0, {with_care.data(), 1}).about, "ground velocity");
   // An attitude that leaves the gyro has no cause in the accelerometer.
   contradiction.by_gyro = true;
   EXPECT_EQ(contradiction_row(contradiction, 10.0, causes).about, "vel_down");

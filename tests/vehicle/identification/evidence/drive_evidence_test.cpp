@@ -263,7 +263,7 @@ recording::DelayReport steering_late(double delay_s = -0.09, double sigma_s = 0.
 }
 
 KnownByModel with_delay(double value, double sigma) {
-  return {.steer_delay = estimation::Parameter{.name = "steer_delay", .value = value, .sigma = sigma}};
+  return {.delay = DelayByModel{.value_s = value, .sigma_s = sigma}};
 }
 
 // Limits are 0.004 s either way, with care, and 0.02 s, failed; what three standard errors allow is within them.
@@ -282,6 +282,12 @@ TEST(DriveEvidence, JudgesTheDelayThatTheModelFinds) {
     EXPECT_EQ(advice_of(row).empty(), outcome == Outcome::kPassed) << value << " +- " << sigma;
   }
   EXPECT_THAT(says(steering_row(steering_late(), with_delay(-0.024, 0.001))), HasSubstr("steer is 24.0 +- 1.0 ms"));
+  KnownByModel accel = with_delay(0.1, 0.001);
+  accel.delay->channel = DriveUnknown::kAccelYDelay;
+  EXPECT_EQ(steering_row(steering_late(), accel).about, "accel_y");
+  EXPECT_THAT(advice_of(steering_row(steering_late(), accel)), HasSubstr("identify.estimate with \"accel_y_delay\""));
+  accel.delay->value_s = -0.1;
+  EXPECT_EQ(steering_row(steering_late(), accel).about, "steer, yaw_rate") << "no sensor is early";
   // A delay that the model does not determine leaves the signals.
   for (const double unknown : {kInfinity, kNaN})
     EXPECT_EQ(steering_row(steering_late(), with_delay(0.0, unknown)).check, Check::kSteeringOrder);

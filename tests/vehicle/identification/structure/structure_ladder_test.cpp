@@ -65,8 +65,8 @@ TEST(StructureLadder, APlainBicycleStaysOne) {
   }
   EXPECT_EQ(ladder.chosen, 0U);
   EXPECT_EQ(ladder.reason, "structure: bicycle: none richer makes the drive likelier");
-  ASSERT_TRUE(ladder.steer_delay.has_value());
-  EXPECT_NEAR(ladder.steer_delay->value, 0.0, 0.002);
+  ASSERT_TRUE(ladder.delay.has_value());
+  EXPECT_NEAR(ladder.delay->value_s, 0.0, 0.002);
   ASSERT_TRUE(ladder.fit.raw.usable()) << ladder.fit.raw.message;
   EXPECT_NEAR(value_of(ladder, DriveUnknown::kCf) / family_car().C_f, 1.0, 0.03);
   // A richer structure contains the simpler one: none is less likely beyond its prior.
@@ -99,9 +99,9 @@ TEST(StructureLadder, ACarThatRollsTakesRollAndItsStiffnessesComeOut) {
   EXPECT_GT(std::abs(ladder.tried[0].value[0] / car.C_f - 1.0), 0.02);
   EXPECT_GT(ladder.tried[0].negative_log_likelihood, taken.negative_log_likelihood + kLikelier);
   // The model that may say so finds that the steering is not late.
-  ASSERT_TRUE(ladder.steer_delay.has_value());
-  EXPECT_NEAR(ladder.steer_delay->value, 0.0, 0.01);
-  EXPECT_EQ(ladder.steer_delay->name, "steer_delay");
+  ASSERT_TRUE(ladder.delay.has_value());
+  EXPECT_NEAR(ladder.delay->value_s, 0.0, 0.01);
+  EXPECT_EQ(ladder.delay->channel, DriveUnknown::kSteerDelay);
 }
 
 TEST(StructureLadder, AWrongScaleOfTheAccelerometerIsNoRoll) {

@@ -64,9 +64,9 @@ Evidence holdout(const std::string& name, const CoefficientChecks& checks, doubl
   const bool passed = r2 >= least_r2;
   // A coefficient that hardly varies, such as drag in cruise: its parameters have their intervals all the same. One
   // that misses by more than the mean does is not that.
-  if (!passed && checks.holdout_ratio < estimation::kNoiseKnownTo && !(r2 < 0.0))
-    return row(Outcome::kCare, Purpose::kPrediction, Cause::kExcitation);
-  if (estimation::outcome_of_hold_out(r2, least_r2) == Outcome::kCare)
+  const bool noise_alone = checks.holdout_ratio < estimation::kNoiseKnownTo && !(r2 < 0.0);
+  if (!passed && noise_alone) return row(Outcome::kCare, Purpose::kPrediction, Cause::kExcitation);
+  if (estimation::outcome_of_hold_out(r2, least_r2) == Outcome::kCare && !noise_alone)
     return row(Outcome::kCare, Purpose::kPrediction, Cause::kMissingTerm);
   const bool weak = checks.unmodelled_share > kWeakModel;
   const Outcome outcome = !passed ? Outcome::kFailed : passed_or(!weak, Outcome::kCare);

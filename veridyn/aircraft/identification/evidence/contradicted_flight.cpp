@@ -50,7 +50,7 @@ std::optional<Suspect> suspect_of(const Evidence& row) {
 /// Whether a row has found a sensor wrong that the contradiction is about.
 bool is_cause(const Evidence& row, const Contradiction& contradiction) {
   const std::optional<Suspect> suspect = suspect_of(row);
-  if (row.outcome != Outcome::kFailed || !suspect) return false;
+  if ((row.outcome != Outcome::kFailed && row.outcome != Outcome::kCare) || !suspect) return false;
   // A wrong gyro turns the attitude away, and with it the force.
   return !contradiction.by_gyro || *suspect == Suspect::kGyro || *suspect == Suspect::kAttitude;
 }
@@ -69,8 +69,11 @@ Segments recorded_flight(const Recording& recording, double min_airspeed_mps) {
 }
 
 Evidence contradiction_row(const Contradiction& contradiction, double limit_s, std::span<const Evidence> causes) {
-  const auto cause = std::ranges::find_if(causes, [&](const Evidence& row) { return is_cause(row, contradiction); });
-  const bool named = cause != causes.end();
+  // The worst of them: a sensor that is wrong with care only is refused as well.
+  const Evidence* cause = nullptr;
+  for (const Evidence& row : causes)
+    if (is_cause(row, contradiction) && (cause == nullptr || row.outcome > cause->outcome)) cause = &row;
+  const bool named = cause != nullptr;
   Evidence row =
       estimation::row_of(Check::kDeadReckoning, named ? cause->about : contradiction.channel, Outcome::kFailed);
   row.value = contradiction.span.duration();

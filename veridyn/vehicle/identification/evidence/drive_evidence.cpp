@@ -81,16 +81,16 @@ std::optional<Evidence> frozen_steering(const DriveSignals& signals, std::span<c
   return std::move(row).with("begin", at);
 }
 
-/// Of a row that compared the two: which is late, and by how much; or the other is early.
-Evidence with_late(Evidence row) {
-  row.about = "steer, yaw_rate";
+Evidence with_late(Evidence row, const char* which, double late_s, const char* other) {
   if (!row.passed()) row.cause = Cause::kDelay;
-  const bool steer = row.value < 0.0;
-  const double late = std::abs(row.value);
-  return std::move(row)
-      .with("late", late)
-      .with("which", std::string(steer ? "steer" : "yaw_rate"))
-      .with("other", std::string(steer ? "yaw_rate" : "steer"));
+  return std::move(row).with("late", late_s).with("which", std::string(which)).with("other", std::string(other));
+}
+/// Of a row that compared the two: which is late, and by how much; or the other is early.
+Evidence of_steering(Evidence row) {
+  row.about = "steer, yaw_rate";
+  const double late_s = row.value;
+  return late_s < 0.0 ? with_late(std::move(row), "steer", -late_s, "yaw_rate")
+                      : with_late(std::move(row), "yaw_rate", late_s, "steer");
 }
 
 Evidence row_by_signals(const recording::DelayReport& report, bool misled) {
@@ -100,7 +100,7 @@ Evidence row_by_signals(const recording::DelayReport& report, bool misled) {
                                      : Outcome::kPassed;
   // Signals alone tell a delay to no better than what tyres and a lean make.
   if (outcome != Outcome::kPassed && !misled)
-    return with_late(row_of(Check::kSteeringOrder, "", report.delay_s, report.sigma_s));
+    return of_steering(row_of(Check::kSteeringOrder, "", report.delay_s, report.sigma_s));
   Evidence row = row_of(Check::kSteeringOrder, "steer, yaw_rate", Outcome::kNotVerified);
   row.cause = !determined ? Cause::kExcitation : outcome != Outcome::kPassed ? Cause::kMissingTerm : Cause::kNone;
   row.value = determined ? report.delay_s : kNaN;
@@ -112,15 +112,30 @@ Evidence row_by_signals(const recording::DelayReport& report, bool misled) {
 }  // namespace
 
 Evidence steering_row(const recording::DelayReport& by_signals, const KnownByModel& known) {
-  if (!known.steer_delay || !std::isfinite(known.steer_delay->sigma))
+  if (!known.delay || !std::isfinite(known.delay->sigma_s))
     return row_by_signals(by_signals, known.changed || known.roll_gradient.value_or(0.0) != 0.0);
-  return with_late(row_of(Check::kSteeringDelay, "", known.steer_delay->value, known.steer_delay->sigma));
+  Evidence row = row_of(Check::kSteeringDelay, "accel_y", known.delay->value_s, known.delay->sigma_s);
+  row.with("unknown", std::string(kDriveUnknownNames[known.delay->channel]));
+  if (known.delay->channel != DriveUnknown::kAccelYDelay) return of_steering(std::move(row));
+  // No sensor is early: the others are late then.
+  if (!(known.delay->value_s < 0.0))
+    return with_late(std::move(row), "accel_y", known.delay->value_s, "steer and yaw_rate");
+  row.about = "steer, yaw_rate";
+  return with_late(std::move(row), "steer and yaw_rate", -known.delay->value_s, "accel_y");
 }
 
 bool contradicts_itself(const DriveFindings& findings) {
   return std::ranges::any_of(recording_rows(findings), [](const Evidence& row) {
     return row.outcome == Outcome::kFailed && row.bears_on.contains(Purpose::kParameters);
   });
+}
+
+bool is_in_doubt(const DriveFindings& findings, const KnownByModel& known) {
+  const auto doubts = [](const Evidence& row) {
+    return row.outcome >= Outcome::kCare && row.bears_on.contains(Purpose::kParameters);
+  };
+  return std::ranges::any_of(findings.rows, doubts) ||
+         std::ranges::any_of(consistency_rows(findings.consistency, known.roll_gradient, findings.gravity), doubts);
 }
 
 std::vector<Evidence> recording_rows(const DriveFindings& findings, const KnownByModel& known) {

@@ -7,9 +7,9 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/estimation/judgement/evidence.hpp"
-#include "veridyn/estimation/result/parameter.hpp"
 #include "veridyn/recording/delays.hpp"
 #include "veridyn/vehicle/identification/evidence/drive_consistency.hpp"
+#include "veridyn/vehicle/identification/options/drive_model_options.hpp"
 #include "veridyn/vehicle/identification/signals/drive_segments.hpp"
 #include "veridyn/vehicle/identification/signals/drive_signals.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
@@ -34,23 +34,33 @@ struct DriveFindings {
 /// Whether it contradicts itself, whatever a model would say, in what parameters rest on.
 [[nodiscard]] bool contradicts_itself(const DriveFindings& findings);
 
+/// A delay by which the identified model explains the drive best.
+struct DelayByModel {
+  DriveUnknown channel = DriveUnknown::kSteerDelay;  ///< the steering's, the yaw rate's or accel_y's
+  double value_s = 0.0, sigma_s = 0.0;
+};
+
 /// What the model of a drive knows of its recording.
 struct KnownByModel {
   /// How far the body leans. The structure with roll is taken only where it explains the drive better than a wrong
   /// scale of the accelerometer does.
   std::optional<double> roll_gradient = {};
-  /// How late the steering is, where the model is left free to say so. What compares signals alone takes a body's lean,
-  /// or noise of slow steering, for a delay.
-  std::optional<estimation::Parameter> steer_delay = {};
+  /// Where the model is left free to say so. What compares signals alone takes a body's lean, or noise of slow
+  /// steering, for a delay.
+  std::optional<DelayByModel> delay = {};
   bool changed = false;  ///< the vehicle did not stay what it was, so that signals alone show no delay
 };
+
+/// Whether something that parameters rest on is with care at least, the order in time left aside: of flawed channels a
+/// model takes up what it can, as a delay.
+[[nodiscard]] bool is_in_doubt(const DriveFindings& findings, const KnownByModel& known);
 
 /// The rows of a drive; and, "not verified", of what no drive shows: mass and the place of the centre of gravity.
 [[nodiscard]] std::vector<estimation::Evidence> recording_rows(const DriveFindings& findings,
                                                                const KnownByModel& known = {});
 
-/// The row of the delay between steering and turning: by the model where that says it, else by signals, which never
-/// verify it.
+/// The row of the delay between steering, turning and accel_y: by the model where that says it, else by signals, which
+/// never verify it.
 [[nodiscard]] estimation::Evidence steering_row(const recording::DelayReport& by_signals, const KnownByModel& known);
 
 /// How late the yaw acceleration follows the steering, where the drive shows it.

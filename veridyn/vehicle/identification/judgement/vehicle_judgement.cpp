@@ -191,10 +191,11 @@ std::vector<Evidence> rows_of(const VehicleProblem& problem, const VehicleFindin
   // A contradiction in the recording is the cause of others.
   if (problem.recording != nullptr) {
     KnownByModel known;
-    // A model of wrong channels says nothing of their clocks.
-    if (!contradicts_itself(*problem.recording)) known.steer_delay = findings.steer_delay;
     if (const Parameter* p = findings.chosen.find(kDriveUnknownNames[DriveUnknown::kRollGradient]))
       known.roll_gradient = p->value;
+    // A model of wrong channels says nothing of their clocks.
+    if (!contradicts_itself(*problem.recording) && !is_in_doubt(*problem.recording, known))
+      known.delay = findings.delay;
     add(recording_rows(*problem.recording, known));
   }
   add(check_residuals(problem, findings));

@@ -8,6 +8,7 @@
 #include "veridyn/estimation/judgement/judgement.hpp"
 #include "veridyn/estimation/judgement/unfinished_search.hpp"
 #include "veridyn/estimation/result/analysis.hpp"
+#include "veridyn/vehicle/identification/evidence/drive_evidence.hpp"
 #include "veridyn/vehicle/identification/evidence/vehicle_agreement.hpp"
 #include "veridyn/vehicle/identification/fit/vehicle_estimates.hpp"
 #include "veridyn/vehicle/identification/structure/tried_structure.hpp"
@@ -24,7 +25,7 @@ struct VehicleFindings {
   const DriveValidation& validation;  ///< on the hold-out
   const DriveValidation& by_noise;    ///< see with_noisier_inputs
   std::optional<PartsAgreement> parts = {};
-  std::optional<estimation::Parameter> steer_delay = {};  ///< see StructureLadder
+  std::optional<DelayByModel> delay = {};                 ///< see StructureLadder
   std::span<const StructureDoubt> structure_doubts = {};  ///< which the intervals of `chosen` have
   double model_error = 1.0;                      ///< by which variances of output error grow (`model_error_factor`)
   estimation::UnfinishedSearch unfinished = {};  ///< by an interruption

@@ -62,9 +62,9 @@ const Channel& yaw_rate_channel(const recording::MappedRecording& mapped) {
   if (channel == nullptr) channel = find_channel(mapped, "gyro_z");
   if (channel == nullptr) require_channel(mapped, "yaw_rate", "the lateral motion");
   if (!(channel->rate_Hz() >= 5.0)) {
-    throw InputError(mapped.recording.source,
-                     fmt::format("its {} is sampled at {:.1f} Hz; the lateral motion of a vehicle needs at least 5 Hz",
-                                 channel->name, channel->rate_Hz()));
+    throw InputError(mapped.recording.source, fmt::format("its {} is sampled at {:.1f} Hz; the lateral motion of a "
+                                                          "vehicle needs at least 5 Hz; is its time in seconds?",
+                                                          channel->name, channel->rate_Hz()));
   }
   return *channel;
 }

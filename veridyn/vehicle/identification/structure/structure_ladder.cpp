@@ -88,20 +88,40 @@ VehicleProblem with_options(const VehicleProblem& problem, const VehicleIdentify
   return {problem.signals, problem.segments, problem.start, problem.signal_options, options, problem.recording};
 }
 
+DelayByModel delay_in(const OutputErrorResult& fit, DriveUnknown channel) {
+  const estimation::Parameter& p = fit.raw.parameters[static_cast<std::size_t>(channel)];
+  return {channel, p.value, p.sigma};
+}
+
 /// How late the steering is: as estimated, or where the study does not estimate it, as it is where the model is left
-/// free to say so. Nothing where that search fails.
-std::optional<estimation::Parameter> steer_delay_of(const VehicleProblem& problem,
-                                                    const EquationErrorEstimates* equation_error,
-                                                    const OutputErrorResult& fit, Progress& progress) {
-  constexpr auto kDelay = static_cast<std::size_t>(DriveUnknown::kSteerDelay);
+/// free to say so. Nothing where that search fails. A model takes up the delay of any channel as one of the steering:
+/// where it finds one, each channel is tried.
+std::optional<DelayByModel> delay_of(const VehicleProblem& problem, const EquationErrorEstimates* equation_error,
+                                     const OutputErrorResult& fit, Progress& progress) {
   if (!fit.raw.usable() || progress.interrupted()) return std::nullopt;
-  if (problem.options.model.free[DriveUnknown::kSteerDelay]) return fit.raw.parameters[kDelay];
-  VehicleIdentifyOptions options = problem.options;
-  options.model.free[DriveUnknown::kSteerDelay] = true;
-  const OutputErrorResult delayed = estimate_by_output_error(
-      with_options(problem, options), equation_error, fit.raw.theta, fit.whitening, SearchEffort::kOnce, progress);
-  if (!delayed.raw.usable()) return std::nullopt;
-  return delayed.raw.parameters[kDelay];
+  const auto& free = problem.options.model.free;
+  if (free[DriveUnknown::kSteerDelay]) return delay_in(fit, DriveUnknown::kSteerDelay);
+  const auto with = [&](DriveUnknown channel) {
+    VehicleIdentifyOptions options = problem.options;
+    options.model.free[channel] = true;
+    return estimate_by_output_error(with_options(problem, options), equation_error, fit.raw.theta, fit.whitening,
+                                    SearchEffort::kOnce, progress);
+  };
+  OutputErrorResult best = with(DriveUnknown::kSteerDelay);
+  if (!best.raw.usable()) return std::nullopt;
+  DelayByModel found = delay_in(best, DriveUnknown::kSteerDelay);
+  const estimation::Tolerance& limits = estimation::info_of(estimation::Check::kSteeringDelay).tolerance;
+  const bool raised = estimation::outcome_of(found.value_s, found.sigma_s, limits) != estimation::Outcome::kPassed;
+  if (!raised || !problem.signals[DriveSignal::kAccelY].available()) return found;
+  for (const DriveUnknown channel : {DriveUnknown::kYawRateDelay, DriveUnknown::kAccelYDelay}) {
+    if (free[channel] || progress.interrupted()) continue;
+    OutputErrorResult other = with(channel);
+    const double gain = best.raw.negative_log_likelihood - other.raw.negative_log_likelihood;
+    if (!other.raw.usable() || !(gain > kLikelier * variance_inflation(fit.raw))) continue;
+    found = delay_in(other, channel);
+    best = std::move(other);
+  }
+  return found;
 }
 
 /// The options for a structure. Saturation has no relaxation length where the data did not ask for one.
@@ -298,7 +318,7 @@ class Climb {
       return;
     }
     ladder_.unfinished.converged = true;
-    ladder_.steer_delay = steer_delay_of(given(ladder_.chosen), equation_error_, ladder_.fit, progress_);
+    ladder_.delay = delay_of(given(ladder_.chosen), equation_error_, ladder_.fit, progress_);
     if (progress_.interrupted()) leave_out("a delay of the steering was not looked for");
   }
 

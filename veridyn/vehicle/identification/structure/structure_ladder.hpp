@@ -7,6 +7,7 @@
 
 #include "veridyn/core/progress.hpp"
 #include "veridyn/estimation/judgement/unfinished_search.hpp"
+#include "veridyn/vehicle/identification/evidence/drive_evidence.hpp"
 #include "veridyn/vehicle/identification/fit/vehicle_estimates.hpp"
 #include "veridyn/vehicle/identification/structure/tried_structure.hpp"
 
@@ -18,8 +19,9 @@ struct StructureLadder {
   std::size_t chosen = 0;
   DriveModelOptions model = {};  ///< of the chosen one
   OutputErrorResult fit = {};    ///< of it, to the end
-  /// How late the recorded steering is where the model with roll is left free to say so.
-  std::optional<estimation::Parameter> steer_delay = {};
+  /// How late the recorded steering is where the model is left free to say so; the delay of an output where that is
+  /// beyond the limits and the output's explains the drive better.
+  std::optional<DelayByModel> delay = {};
   std::vector<StructureDoubt> doubts;  ///< what the structures that are left open would change
   std::string reason;                  ///< one sentence; empty where the study fixes the structure
   /// What an interruption kept it from; `fit` is the best that was there by then.
