@@ -70,8 +70,9 @@ template <typename Scalar>
 [[nodiscard, gnu::always_inline]] inline FourAngles<Scalar> arc_tangents(const FourAngles<Scalar>& x) {
   using std::atan;
   if constexpr (std::is_same_v<Scalar, double>) {
-    constexpr double kMost = internal::kArcTangentMost;
-    if (std::abs(x[0]) <= kMost && std::abs(x[1]) <= kMost && std::abs(x[2]) <= kMost && std::abs(x[3]) <= kMost) {
+    constexpr double kLargest = internal::kArcTangentMost;
+    if (std::abs(x[0]) <= kLargest && std::abs(x[1]) <= kLargest && std::abs(x[2]) <= kLargest &&
+        std::abs(x[3]) <= kLargest) {
       const auto& c = internal::kArcTangent;
       const FourAngles<double> z = x * x, z2 = z * z, z4 = z2 * z2;
       // In short chains of operations, which the processor overlaps.

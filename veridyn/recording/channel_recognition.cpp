@@ -157,9 +157,9 @@ std::string on_one_line(std::string text) {
 /// "# words: a, b, c", wrapped.
 std::string listed(std::string_view words, const std::vector<std::string>& names) {
   if (names.empty()) return {};
-  constexpr std::size_t kMost = 120, kWidth = 110;
+  constexpr std::size_t kNamesShown = 120, kWidth = 110;
   std::string text, line = fmt::format("# {}:", words);
-  for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) {
+  for (std::size_t i = 0; i < std::min(names.size(), kNamesShown); ++i) {
     const std::string word = fmt::format(" {}{}", on_one_line(names[i]), i + 1 < names.size() ? "," : "");
     if (line.size() + word.size() > kWidth) {
       text += line + '\n';
@@ -168,8 +168,8 @@ std::string listed(std::string_view words, const std::vector<std::string>& names
     line += word;
   }
   text += line + '\n';
-  if (names.size() > kMost)
-    text += fmt::format("#   and {} more: `veridyn inspect` lists them\n", names.size() - kMost);
+  if (names.size() > kNamesShown)
+    text += fmt::format("#   and {} more: `veridyn inspect` lists them\n", names.size() - kNamesShown);
   return text;
 }
 

@@ -27,7 +27,7 @@ constexpr double kRestsFor_s = 2.0;
 constexpr double kControlRestsFor_s = 30.0;
 /// Samples that a held value has at least, and the share of all samples that are held equally long.
 constexpr std::size_t kHeld = 3;
-constexpr double kMostly = 0.8;
+constexpr double kShareAlike = 0.8;
 
 /// A spike stands out of both its neighbours by so many times what samples around it do.
 constexpr double kSpike = 12.0;
@@ -132,7 +132,7 @@ std::optional<Evidence> is_held(const Sampled& channel) {
   std::size_t alike = 0;
   for (const Run& run : runs)
     if (run.samples + 1 >= typical && run.samples <= typical + 1) alike += run.samples;
-  if (!(static_cast<double>(alike) > kMostly * static_cast<double>(samples))) return std::nullopt;
+  if (!(static_cast<double>(alike) > kShareAlike * static_cast<double>(samples))) return std::nullopt;
   const double measured_Hz = rate_Hz / static_cast<double>(typical);
   Evidence row = row_of(Check::kHeldSamples, which->about, static_cast<double>(typical));
   row.cause = Cause::kHeld;
@@ -174,9 +174,9 @@ double smallest_step_of(const std::vector<Run>& runs, std::size_t stride) {
 /// Between any two values; infinite when there is only one. Where a few thousand of them come as close as `enough`,
 /// that of these: hours of noise need not be sorted to know that they are not coarse.
 double smallest_step(const std::vector<Run>& runs, double enough) {
-  constexpr std::size_t kSome = 4096;
-  if (runs.size() > 2 * kSome) {
-    const double step = smallest_step_of(runs, runs.size() / kSome);
+  constexpr std::size_t kRunsTaken = 4096;
+  if (runs.size() > 2 * kRunsTaken) {
+    const double step = smallest_step_of(runs, runs.size() / kRunsTaken);
     if (step <= enough) return step;
   }
   return smallest_step_of(runs, 1);

@@ -83,7 +83,7 @@ class SignWatch {
       done_ = true;
       console.say(time, right ? "signs, axes and units of the telemetry are right" : "wrong: " + verdict.text);
       if (!right) notes.push_back("the platform was kept parked: " + verdict.text);
-    } else if (verdict.text != missing_ && status.packets[PacketFate::kAccepted] > 0) {
+    } else if (verdict.text != missing_ && status.packets[PacketStatus::kAccepted] > 0) {
       missing_ = verdict.text;
       console.say(time, "signs are not yet checked; still to drive: " + verdict.text);
     }

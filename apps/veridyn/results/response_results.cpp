@@ -54,8 +54,8 @@ Summary summary_of(const ResponseIndices& r, const std::filesystem::path& folder
 
 /// "C_f 61 %, mass 20 %": the total orders of the strongest, or their mu*.
 std::string strongest(const ResponseIndices& r, std::size_t result) {
-  constexpr std::size_t kMost = 3;
-  constexpr double kLeast = 0.01;
+  constexpr std::size_t kInputsShown = 3;
+  constexpr double kLeastIndexShown = 0.01;
   const bool variance = !r.results[result].variance.inputs.empty();
   std::vector<std::pair<double, std::string>> inputs;
   for (std::size_t i = 0; i < r.inputs.size(); ++i)
@@ -63,11 +63,11 @@ std::string strongest(const ResponseIndices& r, std::size_t result) {
                         r.inputs[i].name);
   std::ranges::stable_sort(inputs, std::greater<>(), &std::pair<double, std::string>::first);
   std::vector<std::string> texts;
-  for (std::size_t i = 0; i < std::min(kMost, inputs.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(kInputsShown, inputs.size()); ++i) {
     const auto& [value, name] = inputs[i];
     if (!variance)
       texts.push_back(fmt::format("{} {:.3g}", name, value));
-    else if (value >= kLeast)
+    else if (value >= kLeastIndexShown)
       texts.push_back(fmt::format("{} {:.0f} %", name, 100.0 * value));
   }
   return fmt::format("{}", fmt::join(texts, ", "));

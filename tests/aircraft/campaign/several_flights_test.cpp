@@ -32,7 +32,7 @@ struct MadeSets {
   std::size_t flights = 4;
   double scatter = 0.05;  ///< relative standard deviation of each parameter between flights
   double duration_s = 150.0;
-  bool biases = true;  ///< of gyro, accelerometer and vanes, drawn anew for each flight
+  bool biases = true;  ///< of gyro, accelerometer and vanes, drawn for each flight
 };
 
 /// A study of one flight each, of the same aircraft but for its parameters; own wind and own biases of gyro,

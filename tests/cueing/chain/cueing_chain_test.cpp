@@ -112,7 +112,7 @@ TEST(CueingChain, BeginsAgainFromWhereThePlatformIs) {
   for (int k = 0; k < 50; ++k) chain.brake(0.01);
   const PlatformState rest = chain.guard().state();
   ASSERT_GT(rest.angle.norm(), 1.0 * kDegree);
-  // With no share at first, as after an emergency stop: it stays, and then goes home gently.
+  // With no share at first, as after an emergency stop: it stays, and then returns to its neutral pose gently.
   chain.restart(driving(20.0), 0.0);
   CueingStep s = chain.hold(0.01, 0.0);
   EXPECT_LT((s.wanted.angle - rest.angle).norm(), 0.02 * kDegree);

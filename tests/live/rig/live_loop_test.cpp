@@ -32,8 +32,8 @@ TEST_F(LiveLoopTest, StepsAtItsRateAndSendsWhatTheRigSays) {
   EXPECT_EQ(links.platform.counts().outside, 0U);
   const RigStatus& status = control.status();
   EXPECT_EQ(status.step.state, RigState::kRunning);
-  const std::uint64_t accepted = status.packets[PacketFate::kAccepted];
-  EXPECT_EQ(accepted + status.packets[PacketFate::kUnrecognised], 1000U);
+  const std::uint64_t accepted = status.packets[PacketStatus::kAccepted];
+  EXPECT_EQ(accepted + status.packets[PacketStatus::kUnrecognised], 1000U);
   EXPECT_GT(accepted, 985U);
   EXPECT_EQ(status.times.steps, 1000U);
   // On a time that is told nothing takes any: packets wait for the next deadline, here 10 ms at most.
@@ -50,7 +50,7 @@ TEST_F(LiveLoopTest, WhatWaitedForTheLoopToBeginIsNotInItsLatency) {
   LiveControl control;
   LiveLoop loop(study, 5);
   loop.run(links, clock, control, nullptr, 5 * kSecond);
-  EXPECT_GT(loop.rig().intake().counts()[PacketFate::kAccepted], 480U);
+  EXPECT_GT(loop.rig().intake().counts()[PacketStatus::kAccepted], 480U);
   EXPECT_LE(loop.times().receive_to_send.count(), 201U);
   EXPECT_GE(loop.times().receive_to_send.count(), 195U);
   EXPECT_LE(loop.times().receive_to_send.largest(), 10 * kMillisecond);
@@ -102,12 +102,12 @@ void expect_a_clean_run(double duration) {
   loop.run(links, clock, control, nullptr, nanoseconds(duration));
   EXPECT_EQ(steps, static_cast<std::uint64_t>(std::lround(100.0 * duration)));
   EXPECT_EQ(last - first, 0);
-  const PerPacketFate<std::uint64_t> packets = loop.rig().intake().counts();
+  const PerPacketStatus<std::uint64_t> packets = loop.rig().intake().counts();
   std::uint64_t all = 0;
   for (const std::uint64_t count : packets) all += count;
   EXPECT_EQ(all, links.sent());
   const std::uint64_t put_back = loop.rig().intake().drives() - 1;
-  EXPECT_EQ(all - packets[PacketFate::kAccepted], put_back * (IntakeOptions().begins_again - 1));
+  EXPECT_EQ(all - packets[PacketStatus::kAccepted], put_back * (IntakeOptions().begins_again - 1));
   EXPECT_EQ(loop.times().left_out, 0U);
   EXPECT_EQ(loop.times().not_sent, 0U);
   EXPECT_EQ(links.platform.counts().outside + links.platform.counts().jumps + links.platform.counts().too_hard, 0U);

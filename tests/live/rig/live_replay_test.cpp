@@ -73,7 +73,7 @@ TEST_F(LiveLoopTest, RecordedRunIsReplayedBitForBitWithItsKnobs) {
   EXPECT_EQ(one.changes[4].to, RigState::kFade);
   EXPECT_EQ(one.layout, "Veridyn motion");
   EXPECT_GT(one.run.steps.size(), 2000U);
-  EXPECT_EQ(one.packets[PacketFate::kAccepted], one.times.receive_to_send.count());
+  EXPECT_EQ(one.packets[PacketStatus::kAccepted], one.times.receive_to_send.count());
 }
 
 TEST_F(LiveLoopTest, AReplayWithOtherNumbersIsSaidToDiffer) {

@@ -160,7 +160,7 @@ TEST(LiveRig, StopsOnAPacketWhoeverSendsIt) {
   r.run(5.0);
   r.rig.take(LinkOf::kTelemetry, {"VSTOP1", {0x7f000001, 9999}, r.now});
   r.run(0.01, [](const RigStep& s) { EXPECT_EQ(s.state, RigState::kStopped); });
-  EXPECT_EQ(r.rig.intake().counts()[PacketFate::kWrongSize], 0U);
+  EXPECT_EQ(r.rig.intake().counts()[PacketStatus::kWrongSize], 0U);
 }
 
 TEST(LiveRig, AnEmergencyStopAndAReleaseAtOnceStop) {

@@ -25,7 +25,7 @@ TEST_F(LiveLoopTest, RecordedRigShowsTheStatusThatTheLoopShowed) {
   }
   const RigStatus now = rig.status();
   EXPECT_EQ(steps, then.times.steps);
-  EXPECT_EQ(telemetry, then.packets[PacketFate::kAccepted]);
+  EXPECT_EQ(telemetry, then.packets[PacketStatus::kAccepted]);
   EXPECT_EQ(now.step.time, then.step.time);
   EXPECT_EQ(now.step.state, RigState::kRunning);
   EXPECT_EQ(now.step.order, then.step.order);

@@ -38,9 +38,9 @@ std::vector<TimedPacket> packets(double duration, const VirtualVehicleOptions& o
 
 PacketIntake intake_of(const char* name) { return PacketIntake({io::known_packet(name)}); }
 
-PacketFate fate_of(PacketIntake& intake, const TimedPacket& p, const Sender& sender = kGame) {
+PacketStatus fate_of(PacketIntake& intake, const TimedPacket& p, const Sender& sender = kGame) {
   static_cast<void>(intake.take({p.bytes, sender, p.arrival}));
-  return intake.last_fate();
+  return intake.last_status();
 }
 
 TEST(PacketIntake, LetsADriveThroughWithItsMotion) {
@@ -65,50 +65,50 @@ TEST(PacketIntake, LetsADriveThroughWithItsMotion) {
     }
     ++k;
   }
-  EXPECT_EQ(intake.counts()[PacketFate::kAccepted], k);
+  EXPECT_EQ(intake.counts()[PacketStatus::kAccepted], k);
   EXPECT_EQ(intake.drives(), 1U);
 }
 
 TEST(PacketIntake, CountsWhatItRejectsByKindAndSender) {
   PacketIntake intake = intake_of("veridyn");
   std::vector<TimedPacket> all = packets(2.0);
-  for (std::size_t k = 0; k < 100; ++k) ASSERT_EQ(fate_of(intake, all[k]), PacketFate::kAccepted);
+  for (std::size_t k = 0; k < 100; ++k) ASSERT_EQ(fate_of(intake, all[k]), PacketStatus::kAccepted);
   TimedPacket p = all[100];
   p.bytes.pop_back();
-  EXPECT_EQ(fate_of(intake, p), PacketFate::kWrongSize);
+  EXPECT_EQ(fate_of(intake, p), PacketStatus::kWrongSize);
   p.bytes += "12";
-  EXPECT_EQ(fate_of(intake, p), PacketFate::kWrongSize);
+  EXPECT_EQ(fate_of(intake, p), PacketStatus::kWrongSize);
   p = all[100];
   p.bytes[0] = 'X';
-  EXPECT_EQ(fate_of(intake, p), PacketFate::kWrongSize);
+  EXPECT_EQ(fate_of(intake, p), PacketStatus::kWrongSize);
   p = all[100];
   const float nan = std::nanf("");
   std::memcpy(p.bytes.data() + 40, &nan, 4);
-  EXPECT_EQ(fate_of(intake, p), PacketFate::kImplausible);
+  EXPECT_EQ(fate_of(intake, p), PacketStatus::kImplausible);
   p = all[99];
-  EXPECT_EQ(fate_of(intake, p), PacketFate::kRepeated);
-  EXPECT_EQ(fate_of(intake, all[97]), PacketFate::kOutOfOrder);
+  EXPECT_EQ(fate_of(intake, p), PacketStatus::kRepeated);
+  EXPECT_EQ(fate_of(intake, all[97]), PacketStatus::kOutOfOrder);
   p = all[100];
   p.arrival += nanoseconds(0.3);
-  EXPECT_EQ(fate_of(intake, p), PacketFate::kStale);
+  EXPECT_EQ(fate_of(intake, p), PacketStatus::kStale);
   p = all[100];
   const float far = 900.0F;
   std::memcpy(p.bytes.data() + 16, &far, 4);
-  EXPECT_EQ(fate_of(intake, p), PacketFate::kTeleporting);
-  EXPECT_EQ(fate_of(intake, all[100], kStranger), PacketFate::kOtherSender);
-  EXPECT_EQ(fate_of(intake, all[100]), PacketFate::kAccepted);
+  EXPECT_EQ(fate_of(intake, p), PacketStatus::kTeleporting);
+  EXPECT_EQ(fate_of(intake, all[100], kStranger), PacketStatus::kOtherSender);
+  EXPECT_EQ(fate_of(intake, all[100]), PacketStatus::kAccepted);
   const auto senders = intake.senders();
   ASSERT_EQ(senders.size(), 2U);
   EXPECT_EQ(senders[0].sender, kGame);
-  EXPECT_EQ(senders[0].counts[PacketFate::kWrongSize], 3U);
-  EXPECT_EQ(senders[1].counts[PacketFate::kOtherSender], 1U);
-  EXPECT_EQ(intake.counts()[PacketFate::kAccepted], 101U);
+  EXPECT_EQ(senders[0].counts[PacketStatus::kWrongSize], 3U);
+  EXPECT_EQ(senders[1].counts[PacketStatus::kOtherSender], 1U);
+  EXPECT_EQ(intake.counts()[PacketStatus::kAccepted], 101U);
 }
 
 TEST(PacketIntake, BeginsAgainWhereADriveIsPutBackAndSaysSo) {
   PacketIntake intake = intake_of("veridyn");
   const std::vector<TimedPacket> all = packets(4.0);
-  for (std::size_t k = 0; k < 300; ++k) ASSERT_EQ(fate_of(intake, all[k]), PacketFate::kAccepted);
+  for (std::size_t k = 0; k < 300; ++k) ASSERT_EQ(fate_of(intake, all[k]), PacketStatus::kAccepted);
   // The game loads a state of 3 s before; its clock goes back with it.
   std::size_t until = 0;
   bool restarted = false;
@@ -128,9 +128,9 @@ TEST(PacketIntake, ListensToAnotherSenderOnceTheFirstIsSilent) {
   PacketIntake intake = intake_of("veridyn");
   const std::vector<TimedPacket> all = packets(4.0);
   for (std::size_t k = 0; k < 100; ++k) fate_of(intake, all[k]);
-  EXPECT_EQ(fate_of(intake, all[150], kStranger), PacketFate::kOtherSender);  // half a second of silence
-  EXPECT_EQ(fate_of(intake, all[250], kStranger), PacketFate::kAccepted);
-  EXPECT_EQ(fate_of(intake, all[251], kGame), PacketFate::kOtherSender);
+  EXPECT_EQ(fate_of(intake, all[150], kStranger), PacketStatus::kOtherSender);  // half a second of silence
+  EXPECT_EQ(fate_of(intake, all[250], kStranger), PacketStatus::kAccepted);
+  EXPECT_EQ(fate_of(intake, all[251], kGame), PacketStatus::kOtherSender);
   EXPECT_EQ(intake.drives(), 2U);
 }
 
@@ -165,7 +165,7 @@ TEST(PacketIntake, FindsOutByContentWhichPacketsTheyAre) {
     ASSERT_NE(intake.layout(), nullptr);
     EXPECT_EQ(intake.layout()->name, layout.name);
     EXPECT_GT(accepted, 180U);
-    EXPECT_EQ(intake.counts()[PacketFate::kUnrecognised] + accepted, 200U);
+    EXPECT_EQ(intake.counts()[PacketStatus::kUnrecognised] + accepted, 200U);
   }
 }
 
@@ -197,7 +197,7 @@ TEST(PacketIntake, StandsWhateverBytesCome) {
     ++taken;
     EXPECT_TRUE(t->sample.force.allFinite() && t->sample.rate.allFinite() && t->sample.attitude.coeffs().allFinite());
   }
-  EXPECT_EQ(intake.counts()[PacketFate::kAccepted], taken);
+  EXPECT_EQ(intake.counts()[PacketStatus::kAccepted], taken);
 }
 
 TEST(PacketIntake, TakesTheRecordedPacketsOfAGame) {
@@ -216,7 +216,7 @@ TEST(PacketIntake, TakesTheRecordedPacketsOfAGame) {
   }
   // Menus, where everything is zero, and what repeats a stamp, are left out.
   const auto counts = intake.counts();
-  EXPECT_GT(counts[PacketFate::kAccepted], 10000U);
+  EXPECT_GT(counts[PacketStatus::kAccepted], 10000U);
   std::uint64_t all = 0;
   for (const std::uint64_t c : counts) all += c;
   EXPECT_EQ(all, 12151U);

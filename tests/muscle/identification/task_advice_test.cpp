@@ -39,7 +39,7 @@ const std::string kFourUnknowns =
 struct Foretold {
   TaskAdvice advice;
   double then = 0.0;  ///< the widest interval with the advised task
-  /// Lessening of the widest interval over what was foretold.
+  /// Lessening of the widest interval over what was predicted.
   [[nodiscard]] double ratio() const {
     return (advice.now.share - then) / (advice.now.share - advice.tasks.front().then.share);
   }

@@ -122,13 +122,13 @@ std::vector<CheckOutcome> calibration_checks(const CalibrationPoints& points, co
                          "the track is seen as in a mirror: are x and y swapped, or does x or y of the track or "
                          "of the image grow the other way?"});
   const double scale = std::sqrt(std::abs(J.determinant()));
-  constexpr double kLeast = 2.0, kMost = 20000.0;
+  constexpr double kSmallestScale_px = 2.0, kLargestScale_px = 20000.0;
   checks.push_back(
-      scale > kLeast && scale < kMost
+      scale > kSmallestScale_px && scale < kLargestScale_px
           ? CheckOutcome{true, fmt::format("scale {:.1f} px/m", scale)}
           : CheckOutcome{false, fmt::format("scale {:.3g} px/m is outside {:g} to {:g}: is the track in metres (write "
                                             "world_x[mm] for millimetres) and the image in pixels?",
-                                            scale, kLeast, kMost)});
+                                            scale, kSmallestScale_px, kLargestScale_px)});
   checks.push_back(
       std::isfinite(c.sigma_image)
           ? CheckOutcome{true, fmt::format("{} points for {} parameters", c.points, c.distorted ? 12 : 8)}

@@ -63,9 +63,10 @@ std::array<double, 2> range_of(const StudyTable& table, const char* key, const s
 }
 
 int size_of(const StudyTable& table, const char* key, int otherwise) {
-  constexpr long long kLeast = 64, kMost = 8192;
+  constexpr long long kSmallest_px = 64, kLargest_px = 8192;
   const long long v = table.integer_or(key, otherwise);
-  if (v < kLeast || v > kMost) table.fail(key, fmt::format("= {} must be {} to {} px", v, kLeast, kMost));
+  if (v < kSmallest_px || v > kLargest_px)
+    table.fail(key, fmt::format("= {} must be {} to {} px", v, kSmallest_px, kLargest_px));
   return static_cast<int>(v);
 }
 

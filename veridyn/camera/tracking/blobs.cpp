@@ -196,8 +196,8 @@ Blob BlobFinder::measure(const GreyView& image, const Box& box) const {
   blob.covariance = noise_ * noise_ / (light * light) * spread;
   // Compression, the shapes of pixels and of the lens move a centre by some hundredths of a pixel whatever the noise
   // is; one pixel alone says where it is to a third of itself.
-  constexpr double kLeast = 1e-3;
-  blob.covariance.diagonal().array() += count > 1.0 ? kLeast : 1.0 / 12.0;
+  constexpr double kLeastVariance_px2 = 1e-3;
+  blob.covariance.diagonal().array() += count > 1.0 ? kLeastVariance_px2 : 1.0 / 12.0;
   return blob;
 }
 

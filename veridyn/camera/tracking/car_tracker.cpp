@@ -84,7 +84,7 @@ TrackedPose CarTracker::add(double time, std::span<const PoseMeasurement> candid
   begin(time);
   std::optional<PoseMeasurement> measured;
   if (following_) {
-    constexpr double kClearly = 9.0;
+    constexpr double kClearDistance = 9.0;
     double best = kInfinity, second = kInfinity;
     for (const PoseMeasurement& pose : candidates) {
       const double d = distance(pose, 1.0);
@@ -97,7 +97,7 @@ TrackedPose CarTracker::add(double time, std::span<const PoseMeasurement> candid
       }
     }
     // Without a clear best the heading is not known any more.
-    if (measured && best < pose_gate_ && second < best + kClearly) following_ = false;
+    if (measured && best < pose_gate_ && second < best + kClearDistance) following_ = false;
     if (!(best < pose_gate_) || !following_) measured.reset();
   }
   if (!following_ && !measured) measured = found_again(time, candidates);
@@ -225,8 +225,8 @@ std::optional<PoseMeasurement> CarTracker::recognise(std::size_t markers, bool p
     pairs(1, 2);
   }
   // Two that agree about equally well: which of them is the car is not known.
-  constexpr double kClearly = 9.0;
-  const bool ambiguous = predicted && markers < layout.size() ? second_distance < best_distance + kClearly
+  constexpr double kClearDistance = 9.0;
+  const bool ambiguous = predicted && markers < layout.size() ? second_distance < best_distance + kClearDistance
                                                               : !predicted && second.has_value();
   if (ambiguous && best && second && (best->pose - second->pose).head<2>().norm() > 1e-3) return std::nullopt;
   return best;

@@ -30,8 +30,9 @@ VideoFrames::VideoFrames(const std::filesystem::path& path) : reader_(std::make_
   if (r.video == nullptr)
     throw InputError(r.name, error.empty() ? "is no video that can be read"
                                            : fmt::format("is no video that can be read ({})", error));
-  constexpr double kMost = 1e6;
-  if (!(properties.width >= 1.0 && properties.height >= 1.0 && properties.width < kMost && properties.height < kMost))
+  constexpr double kLargest_px = 1e6;
+  if (!(properties.width >= 1.0 && properties.height >= 1.0 && properties.width < kLargest_px &&
+        properties.height < kLargest_px))
     throw InputError(r.name, "does not say how large its frames are");
   r.width = static_cast<int>(properties.width);
   r.height = static_cast<int>(properties.height);

@@ -37,9 +37,9 @@ std::optional<double> parameter(const httplib::Request& request, const char* nam
 
 /// Which run is asked about.
 std::optional<std::size_t> run_of(const httplib::Request& request) {
-  constexpr double kMost = 1000.0;
+  constexpr double kMostRuns = 1000.0;
   const std::optional<double> run = parameter(request, "run");
-  return run && *run >= 0.0 && *run < kMost ? std::optional(static_cast<std::size_t>(*run)) : std::nullopt;
+  return run && *run >= 0.0 && *run < kMostRuns ? std::optional(static_cast<std::size_t>(*run)) : std::nullopt;
 }
 
 /// A request as the page writes it: {"request": "park"}, {"knob": 3, "value": 0.7}, {"undo": true}; with "run" where

@@ -105,12 +105,12 @@ ShownRun RecordedRun::shown() {
 }
 
 std::string RecordedRun::frames(double from, double to) const {
-  constexpr std::size_t kMost = 200;
+  constexpr std::size_t kFramesSent = 200;
   const std::lock_guard lock(mutex_);
   auto at = std::upper_bound(frames_.begin(), frames_.end(), from, [](double t, const Frame& f) { return t < f.time; });
   if (at != frames_.begin()) --at;
   std::string all = "[";
-  for (std::size_t n = 0; n < kMost && at != frames_.end() && (n == 0 || at->time <= to); ++n, ++at) {
+  for (std::size_t n = 0; n < kFramesSent && at != frames_.end() && (n == 0 || at->time <= to); ++n, ++at) {
     if (n > 0) all += ",";
     all += at->json;
   }

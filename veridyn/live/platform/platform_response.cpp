@@ -74,8 +74,8 @@ Eigen::MatrixXd derivatives(const ToldAndReached& m, const Unknowns& u) {
 Unknowns fitted(const ToldAndReached& m, const Eigen::VectorXd& y) {
   Unknowns u = best_start(m, y);
   double cost = sum_of_squares(y, u, m), damping = 1e-3;
-  constexpr int kMost = 100;
-  for (int iteration = 0; iteration < kMost && damping < 1e10; ++iteration) {
+  constexpr int kMaxIterations = 100;
+  for (int iteration = 0; iteration < kMaxIterations && damping < 1e10; ++iteration) {
     const Eigen::MatrixXd J = derivatives(m, u);
     const Eigen::VectorXd r = y - simulated(m, u);
     const Eigen::Matrix4d H = J.transpose() * J;
@@ -95,7 +95,7 @@ Unknowns fitted(const ToldAndReached& m, const Eigen::VectorXd& y) {
         u = next;
         cost = then;
         damping = std::max(damping / 10.0, 1e-9);
-        if (done) iteration = kMost;
+        if (done) iteration = kMaxIterations;
       } else {
         damping *= 10.0;
       }

@@ -43,7 +43,7 @@ std::optional<Telemetry> CarLink::motion_of(const ReceivedReport& report) {
   const CarSensors& s = report.payload.sensors;
   const double wheels = 0.5 * (s.wheel_speeds[2] + s.wheel_speeds[3]);
   const bool known = s.acceleration.allFinite() && s.rate.allFinite() && std::isfinite(wheels);
-  ++counts_[known ? PacketFate::kAccepted : PacketFate::kImplausible];
+  ++counts_[known ? PacketStatus::kAccepted : PacketStatus::kImplausible];
   if (!known) return std::nullopt;
   clock_.add(seconds(report.made), report.arrived);
   Telemetry t;

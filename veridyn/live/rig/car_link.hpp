@@ -47,7 +47,7 @@ class CarLink {
   [[nodiscard]] CarStatus status(Nanoseconds now) const;
   [[nodiscard]] const OperatorEnd& end() const { return end_; }
   /// Reports that held a motion, and those without one.
-  [[nodiscard]] const PerPacketFate<std::uint64_t>& counts() const { return counts_; }
+  [[nodiscard]] const PerPacketStatus<std::uint64_t>& counts() const { return counts_; }
   /// The oldest event of wheel and pedals that no command held before the last one did; asked once.
   [[nodiscard]] std::optional<Nanoseconds> take_pedal();
 
@@ -63,7 +63,7 @@ class CarLink {
   std::optional<std::uint32_t> last_report_;
   std::uint64_t restarts_ = 0;
   bool begun_ = false;
-  PerPacketFate<std::uint64_t> counts_ = {};
+  PerPacketStatus<std::uint64_t> counts_ = {};
   WheelEventDecoder decoder_;
   WheelAxes axes_;
   std::optional<DriverInput> input_;

@@ -32,7 +32,7 @@ struct RigStatus {
   RigStep step;
   Readiness readiness = Readiness::kNoTelemetry;
   LiveRig::Answers answers;
-  PerPacketFate<std::uint64_t> packets = {};
+  PerPacketStatus<std::uint64_t> packets = {};
   std::uint64_t drives = 0, gaps = 0;
   LiveRig::Extrapolated extrapolated;
   double drift = 0.0;            ///< of the sender's clock, NaN where not known

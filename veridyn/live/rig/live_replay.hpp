@@ -53,7 +53,7 @@ struct LiveReplay {
   };
   std::vector<Turn> turns;
   LoopTimes times;  ///< `wait` and `work` are not recorded: empty, or those that the run itself measured
-  PerPacketFate<std::uint64_t> packets = {};
+  PerPacketStatus<std::uint64_t> packets = {};
   std::vector<PacketIntake::FromSender> senders;
   std::uint64_t drives = 0, gaps = 0;
   LiveRig::Extrapolated extrapolated;

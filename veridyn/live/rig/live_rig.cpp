@@ -300,7 +300,7 @@ bool LiveRig::platform_follows(Nanoseconds time) const {
 }
 
 void LiveRig::command_car(Nanoseconds time) {
-  // 100 times a second is what the line carries; a step that is early by a hair is taken too.
+  // 100 times a second is what the line carries; a step that is slightly early is taken too.
   constexpr Nanoseconds kApart = kSecond / 100 - kMillisecond / 10;
   step_.command_size = 0;
   if (!car_ || (last_command_ && time - *last_command_ < kApart)) return;

@@ -74,7 +74,7 @@ class LiveRig {
   [[nodiscard]] CarLink* car() { return car_ ? &*car_ : nullptr; }
   [[nodiscard]] const CarLink* car() const { return car_ ? &*car_ : nullptr; }
   /// Of the telemetry, whichever it is: what became of it, and its clock against ours.
-  [[nodiscard]] PerPacketFate<std::uint64_t> packets() const { return car_ ? car_->counts() : intake_.counts(); }
+  [[nodiscard]] PerPacketStatus<std::uint64_t> packets() const { return car_ ? car_->counts() : intake_.counts(); }
   [[nodiscard]] const SenderClock& clock() const { return car_ ? car_->clock() : intake_.clock(); }
   /// Answers of the platform: how many, those that could not be read, the last one's verdict, orders that it counted
   /// outside its limits, and the round trip of the last.

@@ -40,25 +40,25 @@ void check_motion(const io::PacketLayout& layout) {
 
 }  // namespace
 
-std::string_view name_of(PacketFate fate) {
+std::string_view name_of(PacketStatus fate) {
   switch (fate) {
-    case PacketFate::kAccepted:
+    case PacketStatus::kAccepted:
       return "accepted";
-    case PacketFate::kWrongSize:
+    case PacketStatus::kWrongSize:
       return "of a wrong size or start";
-    case PacketFate::kImplausible:
+    case PacketStatus::kImplausible:
       return "without a drive (not finite, beyond reason or of a menu)";
-    case PacketFate::kRepeated:
+    case PacketStatus::kRepeated:
       return "repeated";
-    case PacketFate::kOutOfOrder:
+    case PacketStatus::kOutOfOrder:
       return "out of order";
-    case PacketFate::kStale:
+    case PacketStatus::kStale:
       return "stale";
-    case PacketFate::kTeleporting:
+    case PacketStatus::kTeleporting:
       return "teleporting";
-    case PacketFate::kOtherSender:
+    case PacketStatus::kOtherSender:
       return "of another sender";
-    case PacketFate::kUnrecognised:
+    case PacketStatus::kUnrecognised:
       return "before the kind of packet was known";
   }
   return "";
@@ -76,37 +76,37 @@ PacketIntake::PacketIntake(const std::vector<io::PacketLayout>& layouts, const I
 
 std::optional<Telemetry> PacketIntake::take(const Datagram& packet) {
   io::PacketMotion motion;
-  const PacketFate fate = judge(packet, motion);
-  last_fate_ = fate;
+  const PacketStatus fate = judge(packet, motion);
+  last_status_ = fate;
   count(packet.sender, fate);
-  if (fate != PacketFate::kAccepted) return std::nullopt;
+  if (fate != PacketStatus::kAccepted) return std::nullopt;
   last_arrival_ = packet.arrival;
   Telemetry t{.sample = sample_of_last(), .arrival = packet.arrival, .restarted = restarted_};
   restarted_ = false;
   return t;
 }
 
-PacketFate PacketIntake::judge(const Datagram& packet, io::PacketMotion& motion) {
+PacketStatus PacketIntake::judge(const Datagram& packet, io::PacketMotion& motion) {
   if (sender_ && packet.sender != *sender_) {
-    if (packet.arrival - last_arrival_ < nanoseconds(options_.silent_after)) return PacketFate::kOtherSender;
+    if (packet.arrival - last_arrival_ < nanoseconds(options_.silent_after)) return PacketStatus::kOtherSender;
     sender_.reset();  // it has gone silent; whoever sends a drive next is listened to
   }
   if (!chosen_) return recognise(packet);
   Candidate& c = candidates_[*chosen_];
-  if (!c.decoder.decode(packet.bytes, c.values)) return PacketFate::kWrongSize;
-  if (!c.decoder.is_plausible(c.values)) return PacketFate::kImplausible;
+  if (!c.decoder.decode(packet.bytes, c.values)) return PacketStatus::kWrongSize;
+  if (!c.decoder.is_plausible(c.values)) return PacketStatus::kImplausible;
   motion = c.decoder.motion(c.values);
   if (!c.decoder.layout().has("time")) motion.time = seconds(packet.arrival);
   const bool was_silent = !sender_;
   if (was_silent) {
     begin(motion, packet.arrival);
     sender_ = packet.sender;
-    return PacketFate::kAccepted;
+    return PacketStatus::kAccepted;
   }
   return follow(motion, packet.arrival);
 }
 
-PacketFate PacketIntake::recognise(const Datagram& packet) {
+PacketStatus PacketIntake::recognise(const Datagram& packet) {
   constexpr std::size_t kEnough = 10;
   bool of_a_size = false;
   for (Candidate& c : candidates_) {
@@ -122,7 +122,7 @@ PacketFate PacketIntake::recognise(const Datagram& packet) {
     if (c.last && io::follows(*c.last, motion)) ++c.good;
     c.last = motion;
   }
-  if (!of_a_size) return PacketFate::kWrongSize;
+  if (!of_a_size) return PacketStatus::kWrongSize;
   std::size_t best = 0;
   for (std::size_t i = 1; i < candidates_.size(); ++i) {
     if (candidates_[i].good > candidates_[best].good) best = i;
@@ -133,34 +133,34 @@ PacketFate PacketIntake::recognise(const Datagram& packet) {
       alone = alone && (i == best || 2 * candidates_[i].good < candidates_[best].good);
     if (alone) chosen_ = best;
   }
-  return PacketFate::kUnrecognised;
+  return PacketStatus::kUnrecognised;
 }
 
-PacketFate PacketIntake::follow(const io::PacketMotion& motion, Nanoseconds arrival) {
+PacketStatus PacketIntake::follow(const io::PacketMotion& motion, Nanoseconds arrival) {
   const io::PacketMotion& last = history_[kept_ - 1];
-  PacketFate fate = PacketFate::kAccepted;
+  PacketStatus fate = PacketStatus::kAccepted;
   if (motion.time == last.time) {
-    fate = PacketFate::kRepeated;
+    fate = PacketStatus::kRepeated;
   } else if (motion.time < last.time) {
-    fate = PacketFate::kOutOfOrder;
+    fate = PacketStatus::kOutOfOrder;
   } else if (clock_.lateness(motion.time, arrival) > options_.stale_after) {
-    fate = PacketFate::kStale;
+    fate = PacketStatus::kStale;
   } else if (!io::follows(last, motion)) {
-    fate = PacketFate::kTeleporting;
+    fate = PacketStatus::kTeleporting;
   }
-  if (fate == PacketFate::kAccepted) {
+  if (fate == PacketStatus::kAccepted) {
     strays_ = 0;
     clock_.add(motion.time, arrival);
     keep(motion);
     return fate;
   }
-  if (fate == PacketFate::kRepeated) return fate;
+  if (fate == PacketStatus::kRepeated) return fate;
   // What does not fit to the drive, but to itself, is another drive.
   strays_ = stray_ && strays_ > 0 && io::follows(*stray_, motion) ? strays_ + 1 : 1;
   stray_ = motion;
   if (strays_ < options_.begins_again) return fate;
   begin(motion, arrival);
-  return PacketFate::kAccepted;
+  return PacketStatus::kAccepted;
 }
 
 void PacketIntake::begin(const io::PacketMotion& motion, Nanoseconds arrival) {
@@ -218,7 +218,7 @@ recording::MotionSample PacketIntake::sample_of_last() {
   return s;
 }
 
-void PacketIntake::count(const Sender& sender, PacketFate fate) {
+void PacketIntake::count(const Sender& sender, PacketStatus fate) {
   for (std::size_t i = 0; i < known_senders_; ++i) {
     if (senders_[i].sender == sender) {
       ++senders_[i].counts[fate];
@@ -230,10 +230,10 @@ void PacketIntake::count(const Sender& sender, PacketFate fate) {
   ++senders_[known_senders_++].counts[fate];
 }
 
-PerPacketFate<std::uint64_t> PacketIntake::counts() const {
-  PerPacketFate<std::uint64_t> all = {};
+PerPacketStatus<std::uint64_t> PacketIntake::counts() const {
+  PerPacketStatus<std::uint64_t> all = {};
   for (const FromSender& s : senders_) {
-    for (std::size_t i = 0; i < kPacketFates; ++i) all[i] += s.counts[i];
+    for (std::size_t i = 0; i < kPacketStatuss; ++i) all[i] += s.counts[i];
   }
   return all;
 }

@@ -15,7 +15,7 @@
 namespace veridyn::live {
 
 /// What became of a packet.
-enum class PacketFate {
+enum class PacketStatus {
   kAccepted,
   kWrongSize,    ///< of no layout that is looked for, or another start
   kImplausible,  ///< NaN, beyond reason, or of a menu: no drive
@@ -26,11 +26,11 @@ enum class PacketFate {
   kOtherSender,  ///< while another one is listened to
   kUnrecognised  ///< while it is found out which packets they are
 };
-inline constexpr std::size_t kPacketFates = 9;
+inline constexpr std::size_t kPacketStatuss = 9;
 template <class T>
-using PerPacketFate = EnumArray<PacketFate, T, kPacketFates>;
+using PerPacketStatus = EnumArray<PacketStatus, T, kPacketStatuss>;
 /// "accepted", "of a wrong size", ...
-[[nodiscard]] std::string_view name_of(PacketFate fate);
+[[nodiscard]] std::string_view name_of(PacketStatus fate);
 
 /// How packets are taken in.
 struct IntakeOptions {
@@ -62,7 +62,7 @@ class PacketIntake {
   /// @return the motion of an accepted packet
   std::optional<Telemetry> take(const Datagram& packet);
 
-  [[nodiscard]] PacketFate last_fate() const { return last_fate_; }
+  [[nodiscard]] PacketStatus last_status() const { return last_status_; }
   /// The layout that packets have; null before it is known.
   [[nodiscard]] const io::PacketLayout* layout() const {
     return chosen_ ? &candidates_[*chosen_].decoder.layout() : nullptr;
@@ -70,11 +70,11 @@ class PacketIntake {
   [[nodiscard]] const SenderClock& clock() const { return clock_; }
   /// How often drives began, the first one included.
   [[nodiscard]] std::uint64_t drives() const { return drives_; }
-  [[nodiscard]] PerPacketFate<std::uint64_t> counts() const;  ///< of all senders
+  [[nodiscard]] PerPacketStatus<std::uint64_t> counts() const;  ///< of all senders
   /// What came from one sender.
   struct FromSender {
     Sender sender;
-    PerPacketFate<std::uint64_t> counts = {};
+    PerPacketStatus<std::uint64_t> counts = {};
   };
   /// The first ones; those beyond are not counted separately.
   static constexpr std::size_t kSenders = 8;
@@ -91,10 +91,10 @@ class PacketIntake {
     std::size_t seen = 0, good = 0;  ///< of its size; plausible, and following the one before
   };
 
-  void count(const Sender& sender, PacketFate fate);
-  PacketFate judge(const Datagram& packet, io::PacketMotion& motion);
-  PacketFate recognise(const Datagram& packet);
-  PacketFate follow(const io::PacketMotion& motion, Nanoseconds arrival);
+  void count(const Sender& sender, PacketStatus fate);
+  PacketStatus judge(const Datagram& packet, io::PacketMotion& motion);
+  PacketStatus recognise(const Datagram& packet);
+  PacketStatus follow(const io::PacketMotion& motion, Nanoseconds arrival);
   void begin(const io::PacketMotion& motion, Nanoseconds arrival);
   void keep(const io::PacketMotion& motion);
   [[nodiscard]] recording::MotionSample sample_of_last();
@@ -114,7 +114,7 @@ class PacketIntake {
   std::uint64_t drives_ = 0;
   std::array<FromSender, kSenders> senders_{};
   std::size_t known_senders_ = 0;
-  PacketFate last_fate_ = PacketFate::kWrongSize;
+  PacketStatus last_status_ = PacketStatus::kWrongSize;
 };
 
 }  // namespace veridyn::live

@@ -66,8 +66,8 @@ double SenderClock::drift() const {
 }
 
 std::string drift_warning(double drift) {
-  constexpr double kMost = 100e-6;
-  if (!(std::abs(drift) > kMost)) return "";
+  constexpr double kUsualDrift = 100e-6;
+  if (!(std::abs(drift) > kUsualDrift)) return "";
   return fmt::format(
       "the sender's clock runs {:.0f} ppm {} against ours: its stamps are followed, but one of the two clocks is poor",
       std::abs(drift) * 1e6, drift < 0.0 ? "fast" : "slow");

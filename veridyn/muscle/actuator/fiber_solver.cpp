@@ -22,8 +22,8 @@ double FiberSolver::next(Search& s, double step, double length, double residual,
   double slope = 1.0 - step * s.slope;
   if (iteration > 0 && length != s.last) {
     const double secant = (residual - s.last_residual) / (length - s.last);
-    constexpr double kLeast = 0.1;  // steps are far shorter than what would make it less
-    if (secant > kLeast) {
+    constexpr double kLeastSecant = 0.1;  // steps are far shorter than what would make it less
+    if (secant > kLeastSecant) {
       slope = secant;
       s.slope = (1.0 - secant) / step;
     }
@@ -46,9 +46,9 @@ bool FiberSolver::solve(const MuscleGroup<double>& muscles, double step, const M
     begin(muscle_[m], step, in.path_length[m], fiber[m]);
     searching = true;
   }
-  constexpr int kMost = 100;
+  constexpr int kMaxIterations = 100;
   for (int iteration = 0; searching; ++iteration) {
-    if (iteration == kMost) return false;
+    if (iteration == kMaxIterations) return false;
     muscles.rates(in, out);
     searching = false;
     for (std::size_t m = 0; m < muscle_.size(); ++m) {

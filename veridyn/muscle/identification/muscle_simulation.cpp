@@ -20,10 +20,10 @@ numerics::StepControl step_control(double accuracy) {
   // Rounding leaves no more.
   constexpr double kFinest = 1e-8;
   // Where all of an unknown would move the state by less than a thousandth of its scale.
-  constexpr double kLeast = 1e-3;
+  constexpr double kLeastDerivative = 1e-3;
   return {.tolerance = accuracy,
           .derivative_tolerance = std::max(10.0 * accuracy, kFinest),
-          .least_derivative = kLeast,
+          .least_derivative = kLeastDerivative,
           .smallest_step = 1e-12,
           .max_steps = 200000};
 }

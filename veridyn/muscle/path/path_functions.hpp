@@ -34,7 +34,7 @@ class PathFunctions {
   [[nodiscard]] bool inside(const Scalar* q) const;
 
  private:
-  static constexpr int kMost = numerics::MultivariatePolynomial::kMostArguments;
+  static constexpr int kMostCoordinates = numerics::MultivariatePolynomial::kMostArguments;
   struct Argument {
     int coordinate = 0;
     std::size_t pair = 0;
@@ -63,7 +63,7 @@ void PathFunctions::evaluate(const Scalar* q, Scalar* length, Scalar* gradient,
       continue;
     }
     const auto& polynomial = *std::get_if<numerics::MultivariatePolynomial>(&entry.function);
-    Scalar x[kMost], slope[kMost];
+    Scalar x[kMostCoordinates], slope[kMostCoordinates];
     for (std::size_t i = 0; i < entry.arguments.size(); ++i) x[i] = q[entry.arguments[i].coordinate];
     if constexpr (kGradient) {
       length[entry.muscle] = polynomial.evaluate(x, slope);

@@ -204,12 +204,12 @@ void warn_of_reactions(const MuscleStudy& study, MuscleResult& result) {
   if (!result.reactions || study.method == MuscleMethod::kInverseDynamics) return;
   const std::vector<std::string> names = paths_without_place(*study.system);
   if (names.empty()) return;
-  constexpr std::size_t kMost = 3;
+  constexpr std::size_t kNamesShown = 3;
   result.warnings.push_back(
       fmt::format("joint reactions lack what {} of the paths ({}{}) press the bones together with: they are functions "
                   "of coordinates and pull at no place; only their moments are in the reactions",
-                  names.size(), fmt::join(names.begin(), names.begin() + std::min(names.size(), kMost), ", "),
-                  names.size() > kMost ? ", ..." : ""));
+                  names.size(), fmt::join(names.begin(), names.begin() + std::min(names.size(), kNamesShown), ", "),
+                  names.size() > kNamesShown ? ", ..." : ""));
 }
 
 }  // namespace

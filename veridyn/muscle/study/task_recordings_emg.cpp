@@ -57,8 +57,8 @@ std::vector<ControlSignals> true_envelopes(const PreparedTask& task, const EmgSe
       }
     }
     e = numerics::filter(e, kernel);
-    constexpr double kLeast = 0.01;
-    for (double& value : e) value = std::clamp(value, kLeast, 1.0);
+    constexpr double kLeastExcitation = 0.01;
+    for (double& value : e) value = std::clamp(value, kLeastExcitation, 1.0);
     signals.emplace_back(time, std::move(e), 1, Interpolation::kLinear);
   }
   return signals;
@@ -69,8 +69,8 @@ ControlSignals by_muscle(const std::vector<ControlSignals>& signals, const EmgSe
   const std::span<const double> time = signals.front().times();
   std::vector<double> values;
   for (std::size_t k = 0; k < time.size(); ++k) {
-    constexpr double kLeast = 0.01;
-    for (const int s : emg.signal_of) values.push_back(s < 0 ? kLeast : signals[s].row(k)[0]);
+    constexpr double kLeastExcitation = 0.01;
+    for (const int s : emg.signal_of) values.push_back(s < 0 ? kLeastExcitation : signals[s].row(k)[0]);
   }
   return {{time.begin(), time.end()}, std::move(values), emg.signal_of.size(), Interpolation::kLinear};
 }

@@ -70,10 +70,10 @@ struct Problem {
 /// sign(H) by Newton's iteration, scaled so that H and its inverse are of one size. Empty where it does not converge:
 /// an eigenvalue on the imaginary axis has no sign.
 MatrixXd matrix_sign(MatrixXd H) {
-  constexpr int kMost = 60;
+  constexpr int kMaxIterations = 60;
   const auto n = static_cast<double>(H.rows());
   const MatrixXd identity = MatrixXd::Identity(H.rows(), H.cols());
-  for (int i = 0; i < kMost; ++i) {
+  for (int i = 0; i < kMaxIterations; ++i) {
     const MatrixXd inverse = solve_linear(H, identity);
     const double scale = std::sqrt(inverse.norm() / H.norm());
     if (!std::isfinite(scale) || !(scale > 0.0)) return {};
@@ -127,8 +127,8 @@ LinearQuadratic discrete_linear_quadratic(const MatrixXd& A, const MatrixXd& B, 
   const Problem p(A, B, Q, R, N);
   const Index n = A.rows();
   MatrixXd F = p.drift(), G = p.authority(), H = p.weight();
-  constexpr int kMost = 60;
-  for (int i = 0; i < kMost; ++i) {
+  constexpr int kMaxIterations = 60;
+  for (int i = 0; i < kMaxIterations; ++i) {
     MatrixXd both(n, 2 * n);
     both << F, G;
     both = solve_linear(MatrixXd::Identity(n, n) + product(G, H), both);

@@ -56,7 +56,7 @@ struct AxleLoad {
   Scalar front_force_share{0.0};              ///< f [-]
 
   /// No axle loses more than this.
-  static constexpr double kLeast = 0.05;
+  static constexpr double kLeastShareOfLoad = 0.05;
 };
 
 /// What of road and pedals moves the vehicle besides its steering.
@@ -153,7 +153,7 @@ struct RollingBicycle {
     std::array<Scalar, 2> growth{1.0 + axle_load.downforce_f * u * u - moved / p.b,
                                  1.0 + axle_load.downforce_r * u * u + moved / p.a};
     for (Scalar& g : growth)
-      if (g < AxleLoad<Scalar>::kLeast) g = Scalar(AxleLoad<Scalar>::kLeast);
+      if (g < AxleLoad<Scalar>::kLeastShareOfLoad) g = Scalar(AxleLoad<Scalar>::kLeastShareOfLoad);
     const Scalar turned = axle_load.front_force_share * (p.mass * a_x) * tan(steer);
     return {Fy[0] * growth[0] + 0.5 * turned, Fy[1] * growth[1]};
   }

@@ -29,8 +29,9 @@ std::string inadmissible(const AxleSuspension& axle, char suffix) {
 }
 
 std::string inadmissible(const AerodynamicLift& lift) {
-  constexpr double kMost = 100.0;
-  const Limited areas[] = {{"lift_area_f", lift.area_f, kMost, " m^2"}, {"lift_area_r", lift.area_r, kMost, " m^2"}};
+  constexpr double kLargestLiftArea_m2 = 100.0;
+  const Limited areas[] = {{"lift_area_f", lift.area_f, kLargestLiftArea_m2, " m^2"},
+                           {"lift_area_r", lift.area_r, kLargestLiftArea_m2, " m^2"}};
   for (const auto& [name, value, most, unit] : areas) {
     if (!(std::abs(value) <= most))
       return fmt::format("{} is {:g}{}; must be between {:g} and {:g}", name, value, unit, -most, most);

@@ -200,13 +200,13 @@ void DriveTracker::begin(double speed) {
 /// The road's grip is that of the stiffnesses now over those that the body was known with.
 void DriveTracker::follow_grip() {
   if (is_linear(body_.tyres)) return;
-  constexpr double kLeast = 0.2, kMost = 2.0;
+  constexpr double kLeastGrip = 0.2, kMostGrip = 2.0;
   const std::array known = stiffnesses_of(body_.tyres);
   for (const TrackedAxle axle : {TrackedAxle::kFront, TrackedAxle::kRear}) {
     const estimation::RecursiveRegression& r = regression(axle).regression();
     if (!r.usable() || r.excited_directions() < r.parameters()) continue;
     const auto i = static_cast<std::size_t>(axle);
-    grip_[i] = std::clamp(value(axle) / known[i], kLeast, kMost);
+    grip_[i] = std::clamp(value(axle) / known[i], kLeastGrip, kMostGrip);
   }
   axle_rows_.set_grip(grip_);
 }

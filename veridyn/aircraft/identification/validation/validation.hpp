@@ -26,8 +26,9 @@ struct PredictedQuantity {
   std::string name;  ///< "airspeed", "alpha", "beta"
   std::string unit;  ///< of the measures: m/s, deg
   numerics::FitMeasures fit = {};
-  double last_value_rmse = 0.0;   ///< of who holds the value at the start of each window; in the unit of the measures
-  std::vector<double> time = {};  ///< [s]
+  double last_value_rmse =
+      0.0;  ///< of a prediction that holds the value at the start of each window; in the unit of the measures
+  std::vector<double> time = {};       ///< [s]
   std::vector<double> measured = {};   ///< SI
   std::vector<double> predicted = {};  ///< SI; NaN between windows
 };
