@@ -159,7 +159,7 @@ Table trace_table(const LiveReplay& run) {
       .caption = fmt::format(
           "Of {} movements of wheel or pedals that were followed one by one: which command knew of it, which report "
           "of that command, which order of that report, and the platform's answer to that. Stages follow one "
-          "another; their means add up to that of the whole.{} What moves only after it is told comes on top: the "
+          "another; their means add up to that of the whole.{} What moves only after a command comes on top: the "
           "car's servos and mass, the algorithm's filters, and the platform, whose axes come {} later (delay + "
           "2 zeta/omega of [platform]).",
           trace.whole.count(),

@@ -32,7 +32,7 @@ constexpr std::array kAlgorithms = {
     WashoutAlgorithm{"tilt", "tilt coordination alone", &design<TiltDesign>},
     WashoutAlgorithm{"classical", "filters and tilt coordination (Reid & Nahon 1985)", &design<ClassicalDesign>},
     WashoutAlgorithm{"three_axis", "the same where tilt renders the onset too", &design<ThreeAxisDesign>},
-    WashoutAlgorithm{"return", "tilt without a low-pass, and a way home (You et al. 2005)", &design<ReturnDesign>},
+    WashoutAlgorithm{"return", "tilt without a low-pass, and a return to neutral (You et al. 2005)", &design<ReturnDesign>},
     WashoutAlgorithm{"optimal", "least perceived error of a linear rider (Sivan 1982)", &design<OptimalDesign>},
     WashoutAlgorithm{"adaptive", "gains by steepest descent (Nahon & Reid 1990)", &design<AdaptiveDesign>},
     WashoutAlgorithm{"fuzzy", "gains by the room that is left (Hwang et al. 2009)", &design<FuzzyDesign>},
