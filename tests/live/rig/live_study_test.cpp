@@ -8,6 +8,7 @@
 
 #include "tests/live/weaving_drive.hpp"
 #include "tests/support/refusal.hpp"
+#include "tests/support/shown_defaults.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "veridyn/cueing/platform/platform_file.hpp"
 
@@ -68,6 +69,8 @@ TEST(LiveStudy, ARecordingHoldsThePlatformOfAFileByItsNumbers) {
   EXPECT_EQ(again.cueing.platform.response(cueing::PlatformAxis::kPitch).omega, 21.5);
   EXPECT_EQ(again.cueing.platform.response(cueing::PlatformAxis::kPitch).delay, 0.03);
 }
+
+TEST(LiveStudy, ShowsDefaultsThatStudiesTake) { test::expect_defaults_read_back(study_keys()); }
 
 TEST(LiveStudy, RefusesInOneLineWithItsPlace) {
   EXPECT_THAT(refusal("rate = '10 Hz'\n"), HasSubstr("rig.toml:8: live.rate: = 10 must be from 20 to 4000 Hz"));

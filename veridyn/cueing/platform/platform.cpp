@@ -145,7 +145,7 @@ KeyTable<ActuatorOptions> response_keys(const std::string& axis) {
 /// Keys that are not by axis.
 const KeyTable<Platform>& own_keys() {
   static const auto table =
-      KeyTable<Platform>("platform", "The platform; numbers beside `subject` or `file` replace theirs.")
+      KeyTable<Platform>("platform", "A platform built in, of a file or of its own numbers;")
           .elsewhere({"subject", "", "`three_axis`, `three_axis_measured`, `hexapod`, `ideal`", "none",
                       "a built-in one", true})
           .elsewhere({"file", "", "a file", "none", "or one that `veridyn rig test` has measured", true})
@@ -222,7 +222,7 @@ StudyKeys Platform::study_keys() {
   }
   add(reach_keys("AXIS", ""));
   add(leg_keys());
-  all.about += " `AXIS` is `surge`, `sway`, `heave`, `roll`, `pitch` or `yaw`.";
+  all.about += " `AXIS`: `surge`, `sway`, `heave`, `roll`, `pitch`, `yaw`.";
   return all;
 }
 
