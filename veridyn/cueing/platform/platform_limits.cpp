@@ -54,7 +54,9 @@ KeyTable<AxisLimits> axis_keys(const std::string& name, const std::string& unit)
           if (!l.moves() && t.has(key)) t.fail(key, fmt::format("is of an axis that cannot move: {} is missing", name));
           if (l.moves() && value == 0.0) missing.push_back(key);
         }
-        internal::refuse_missing(t, missing);
+        if (!missing.empty())
+          t.fail(missing.front(),
+                 missing.size() == 1 ? "is missing" : fmt::format("is missing, and so is {}", missing.back()));
         if (!t.has(jerk) && (t.has(acceleration) || l.jerk == 0.0)) l.jerk = kUsualJerk * l.acceleration;
       });
 }
