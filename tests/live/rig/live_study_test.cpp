@@ -70,7 +70,7 @@ TEST(LiveStudy, ARecordingHoldsThePlatformOfAFileByItsNumbers) {
   EXPECT_EQ(again.cueing.platform.response(cueing::PlatformAxis::kPitch).delay, 0.03);
 }
 
-TEST(LiveStudy, ShowsDefaultsThatStudiesTake) { test::expect_defaults_read_back(study_keys()); }
+TEST(LiveStudy, ShowsDefaultsThatStudiesTake) { veridyn::test::expect_defaults_read_back(study_keys()); }
 
 TEST(LiveStudy, RefusesInOneLineWithItsPlace) {
   EXPECT_THAT(refusal("rate = '10 Hz'\n"), HasSubstr("rig.toml:8: live.rate: = 10 must be from 20 to 4000 Hz"));
