@@ -1,6 +1,6 @@
 #pragma once
 
-/// Musculoskeletal models: motions, muscle forces, and the identification of a person's muscles.
+/// Musculoskeletal models: motions, muscle forces, and the parameters of a person's muscles.
 ///
 ///     muscle::load_model("arm26.osim")            // read: an OpenSim model, or a built-in one ("arm")
 ///     muscle::read_study(study, progress)         // a motion and what to compute of it, and

@@ -19,7 +19,7 @@ namespace {
 
 using namespace veridyn::cueing;
 
-/// Where the platform is told to be and where it is, sample by sample.
+/// Where the platform is commanded to be and where it is, sample by sample.
 std::string motion_csv(const CueingRun& run, const Platform& platform) {
   std::string text = "time[s]";
   const std::vector<PlatformAxis> axes = platform.limits.moving_axes();

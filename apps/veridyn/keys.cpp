@@ -5,17 +5,25 @@
 #include <algorithm>
 #include <utility>
 
+#include "apps/veridyn/live/camera_run.hpp"
 #include "apps/veridyn/run/console.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/core/study_keys.hpp"
+#include "veridyn/cueing/cueing_keys.hpp"
+#include "veridyn/live/rig/live_study.hpp"
+#include "veridyn/muscle/muscle_keys.hpp"
 #include "veridyn/vehicle/vehicle_keys.hpp"
 
 namespace veridyn::app {
 namespace {
 
 /// What studies are about, as `veridyn init` calls it.
-const std::pair<std::string, std::vector<StudyKeys> (*)()> kKinds[] = {{"vehicle", vehicle::study_keys}};
+const std::pair<std::string, std::vector<StudyKeys> (*)()> kKinds[] = {{"vehicle", vehicle::study_keys},
+                                                                       {"muscle", muscle::study_keys},
+                                                                       {"cueing", cueing::study_keys},
+                                                                       {"live", live::study_keys},
+                                                                       {"camera", camera_keys}};
 
 std::vector<StudyKeys> keys_of(const std::string& kind) {
   std::vector<std::string> names;

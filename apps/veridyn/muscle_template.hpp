@@ -97,7 +97,7 @@ default = 0.05
 # exponent = 2                   # of the activations in the sum that is made least
 # formulation = "with passive"   # "as opensim": without passive forces; "without physiology": force = activation F0
 
-# --- veridyn identify study.toml: the muscles of a person ------------------------------------------------------------
+# --- veridyn identify study.toml: muscle parameters from motions --------------------------------------------------------
 # What it estimates; without this: maximum force, optimal fibre length, tendon slack length of every muscle.
 [[parameter]]
 name = "strength"                # one factor of all muscles' forces

@@ -121,6 +121,27 @@ TEST(StudyKeys, NameAllThatIsMissingAtOnce) {
   EXPECT_THAT(missing("[lag]\ntime = 1\n"), HasSubstr("lag.kind: is missing"));
 }
 
+TEST(StudyKeys, OfTablesWithinHaveTheDefaultsOfWhatTheyAreIn) {
+  struct Slower {
+    Lag lag{.time_s = 0.5};
+    double pose = 1.0;
+  };
+  const auto table = KeyTable<Slower>("thing")
+                         .elsewhere({"pose", "rad", "", "", "of the joint"})
+                         .required()
+                         .table("lag", &Slower::lag, lag_keys())
+                         .repeated();
+  const std::vector<StudyKeys> all = table.described();
+  EXPECT_EQ(all[1].keys[0].otherwise, "\"0.5 s\"");
+  EXPECT_THAT(in_markdown(all[0]), HasSubstr("| `[[thing]]` | unit"));
+  EXPECT_THAT(in_markdown(all[1]), HasSubstr("| `[thing.lag]` | unit"));
+  const auto of = [&](const std::string& toml) {
+    return table.read(Study::parse(toml, "study.toml").root().table("thing"));
+  };
+  EXPECT_EQ(of("[thing]\npose = 2\n").pose, 1.0);  // read elsewhere
+  EXPECT_THAT(why([&] { static_cast<void>(of("[thing]\n")); }), HasSubstr("thing.pose: is missing"));
+}
+
 TEST(StudyKeys, KnowTheirNamesForUnknownOnes) {
   const Study study = Study::parse("[thing]\nrat = 3\n", "study.toml");
   static_cast<void>(keys().read(study.root().table("thing")));

@@ -70,13 +70,13 @@ TEST(MuscleStudy, ErrorsNameFileLineKeyAndTheNearestValidName) {
   const std::string ramp = "[[motion.ramp]]\ncoordinate = \"elbow_flexion\"\nto = \"90 deg\"\nduration = 0.2\n";
   expect_refusals({{kArm, "motion", "is missing"},
                    {kArm + "[motion]\nmethod = \"cmc\"\n", "s.toml:4: motion.method", "computed muscle control"},
-                   {kArm + "[motion]\nduration = 0\n", "s.toml:4: motion.duration", "must be > 0"},
+                   {kArm + "[motion]\nduration = 0\n", "s.toml:4: motion.duration", "must be above 0"},
                    {kArm + "[motion]\naccuracy = 1\n", "s.toml:4: motion.accuracy", "1e-13 to 0.1"},
                    {kArm + "[motion]\nfile = \"x.mot\"\n", "s.toml:4: motion.file", "no use for"},
                    {kFollow + "interpolation = \"hold\"\n" + ramp, "s.toml:6: motion.interpolation", "has no meaning"},
                    {kFollow + ramp + "[motion.control]\nwindow = 1\n", "s.toml:11: motion.control.window",
                     "longer than the motion"},
-                   {kFollow + ramp + "[motion.control]\nmin_control = 1\n", "s.toml:11", "from 0 to below 1"},
+                   {kFollow + ramp + "[motion.control]\nmin_control = 1\n", "s.toml:11", "at least 0 and below 1"},
                    {kFollow + ramp + "[motion.static_optimization]\nexponent = 1\n", "s.toml:11", "above 1"}});
 }
 

@@ -26,7 +26,8 @@ std::string KeyRange::text() const {
 
 std::string in_markdown(const StudyKeys& table) {
   std::string text =
-      fmt::format("| `[{}]` | unit | default | values | meaning |\n| --- | --- | --- | --- | --- |\n", table.table);
+      fmt::format("| `{}[{}]{}` | unit | default | values | meaning |\n| --- | --- | --- | --- | --- |\n",
+                  table.repeated ? "[" : "", table.table, table.repeated ? "]" : "");
   for (const StudyKey& key : table.keys)
     text += fmt::format("| `{}` | {} | {} | {} | {} |\n", key.name, key.unit == "1" ? "" : key.unit,
                         key.in_words || key.otherwise.empty() ? key.otherwise : fmt::format("`{}`", key.otherwise),

@@ -56,6 +56,7 @@ struct StudyKeys {
   std::string table;  ///< "segments", "identify.uncertainty"
   std::string about;  ///< one sentence; empty where the keys say it
   std::vector<StudyKey> keys;
+  bool repeated = false;  ///< `[[table]]`
 };
 
 /// The keys of tables as Markdown, one table each: key, unit, default, range, meaning.
@@ -130,7 +131,8 @@ class KeyTable {
   template <typename Field>
   KeyTable& count(std::string name, Field field, long long least, long long most, std::string says) {
     using V = ValueOf<Field>;
-    const KeyRange range = from_to(static_cast<double>(least), static_cast<double>(most));
+    KeyRange range = from_to(static_cast<double>(least), static_cast<double>(most));
+    if (most == std::numeric_limits<long long>::max()) range.high = std::numeric_limits<double>::infinity();
     return add(
         {std::move(name), {}, range.text(), {}, std::move(says)},
         [field](T& object) {
@@ -237,6 +239,11 @@ class KeyTable {
         key, [otherwise = key.otherwise](T&) { return otherwise; }, std::move(take));
   }
 
+  /// What is read where more is known than this table: the unit of a coordinate, the names of a model.
+  KeyTable& elsewhere(StudyKey key) {
+    return other(std::move(key), [](const StudyTable&, const std::string&, T&) {});
+  }
+
   /// In the same table, the keys of its base.
   template <typename Base>
   requires std::derived_from<T, Base> KeyTable& with(const KeyTable<Base>& base) {
@@ -259,14 +266,20 @@ class KeyTable {
   /// A table within, `[table.name]`, with keys of its own.
   template <typename Field, typename Part>
   KeyTable& table(const std::string& name, Field field, const KeyTable<Part>& part) {
-    within_.push_back({[part, path = table_ + '.' + name](std::vector<StudyKeys>& all) {
-                         std::vector<StudyKeys> more = part.described();
+    within_.push_back({[part, field, path = table_ + '.' + name](std::vector<StudyKeys>& all, T& defaults) {
+                         std::vector<StudyKeys> more = part.described(std::invoke(field, defaults));
                          more.front().table = path;
                          all.insert(all.end(), more.begin(), more.end());
                        },
                        [part, field, name](const StudyTable& outer, T& object) {
                          part.read(outer.table_or_empty(name), std::invoke(field, object));
                        }});
+    return *this;
+  }
+
+  /// The study may have several of it, `[[table]]`.
+  KeyTable& repeated() {
+    repeated_ = true;
     return *this;
   }
 
@@ -317,13 +330,17 @@ class KeyTable {
 
   /// This table and those within it, with the defaults of a `T`.
   [[nodiscard]] std::vector<StudyKeys> described() const {
-    std::vector<StudyKeys> all{{table_, about_, {}}};
     T defaults{};
+    return described(defaults);
+  }
+  /// The same with those of an object.
+  [[nodiscard]] std::vector<StudyKeys> described(T& defaults) const {
+    std::vector<StudyKeys> all{{table_, about_, {}, repeated_}};
     for (const Entry& entry : entries_) {
       all.front().keys.push_back(entry.key);
       if (!entry.key.in_words) all.front().keys.back().otherwise = entry.shown(defaults);
     }
-    for (const Within& within : within_) within.describe(all);
+    for (const Within& within : within_) within.describe(all, defaults);
     return all;
   }
 
@@ -338,7 +355,7 @@ class KeyTable {
     bool required = false;
   };
   struct Within {
-    std::function<void(std::vector<StudyKeys>&)> describe;
+    std::function<void(std::vector<StudyKeys>&, T&)> describe;
     std::function<void(const StudyTable&, T&)> take;
   };
 
@@ -349,6 +366,7 @@ class KeyTable {
   }
 
   std::string table_, about_;
+  bool repeated_ = false;
   std::vector<Entry> entries_;
   std::vector<Within> within_;
   std::vector<std::function<void(const StudyTable&, T&)>> checks_;

@@ -8,8 +8,8 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/cueing/cueing_keys.hpp"
 #include "veridyn/cueing/washout/driver_foresight.hpp"
-#include "veridyn/cueing/washout/driver_settings.hpp"
 #include "veridyn/cueing/washout/lap_foresight.hpp"
 #include "veridyn/cueing/washout/shared_channels.hpp"
 #include "veridyn/recording/consistency.hpp"
@@ -22,22 +22,6 @@ namespace veridyn::cueing {
 namespace {
 
 using recording::MotionSample;
-
-Eigen::Vector3d place(const StudyTable& table, std::string_view key) {
-  if (!table.has(key)) return Eigen::Vector3d::Zero();
-  const std::vector<double> v = table.numbers(key, "m");
-  if (v.size() != 3) table.fail(key, fmt::format("has {} numbers; takes forward, left, up", v.size()));
-  return {v[0], v[1], v[2]};
-}
-
-recording::MotionOptions motion_options(const StudyTable& cue) {
-  recording::MotionOptions o{.place = place(cue, "sensor")};
-  const std::vector<std::string> choices = {"in", "out", "decide"};
-  const std::string gravity = cue.choice_or("gravity", choices, "decide");
-  if (gravity == "in") o.gravity = recording::GravityIn::kYes;
-  if (gravity == "out") o.gravity = recording::GravityIn::kNo;
-  return o;
-}
 
 std::vector<MotionSample> at_driver(std::vector<MotionSample> samples, const Eigen::Vector3d& driver) {
   for (MotionSample& s : samples) s = recording::at_place(s, driver);
@@ -107,11 +91,10 @@ DrivenMotion read_drive(const StudyTable& root, const recording::MotionOptions& 
           .notes = simulation.vehicle.warnings};
 }
 
-std::vector<StudyAlgorithm> read_algorithms(const StudyTable& root, const StudyTable& cue, const Platform& platform) {
+std::vector<StudyAlgorithm> read_algorithms(const StudyTable& root, const StudyTable& cue, const CueTable& keys,
+                                            const Platform& platform) {
   std::vector<StudyAlgorithm> algorithms;
-  const DriverSettings settings = DriverSettings::read(cue);
-  const std::vector<std::string> names =
-      cue.has("algorithms") ? cue.texts("algorithms") : std::vector<std::string>{"classical"};
+  const std::vector<std::string>& names = keys.algorithms;
   if (names.empty()) cue.fail("algorithms", "names none");
   const StudyTable washouts = root.table_or_empty("washout");
   std::vector<std::string> known;
@@ -120,7 +103,7 @@ std::vector<StudyAlgorithm> read_algorithms(const StudyTable& root, const StudyT
     if (std::find(known.begin(), known.end(), name) == known.end())
       cue.fail("algorithms", fmt::format("there is no algorithm '{}'{}", name, suggestion(name, known)));
     StudyAlgorithm algorithm{name, washout_algorithm(name).design()};
-    settings.apply(*algorithm.design);
+    keys.settings.apply(*algorithm.design);
     read_knobs(washouts.table_or_empty(name), algorithm.design->knobs());
     static_cast<void>(algorithm.design->make(platform));  // refuses what cannot be made
     algorithms.push_back(std::move(algorithm));
@@ -179,59 +162,47 @@ struct StudyForesight {
   }
 };
 
-StudyForesight read_foresight(const StudyTable& root, const StudyTable& cue, const CueingStudy& study) {
-  const std::vector<std::string> choices = {"fade", "lap", "driver"};
-  const std::string usual = cue.has("lap") ? "lap" : cue.has("vehicle") ? "driver" : "fade";
-  const std::string choice = cue.choice_or("foresee", choices, usual);
-  if (choice == "lap" && !cue.has("lap")) cue.fail("foresee", "= 'lap' needs a lap of the same track: [cue.lap]");
+StudyForesight read_foresight(const StudyTable& root, const StudyTable& cue, const CueTable& keys,
+                              const CueingStudy& study) {
+  using enum ForesightBy;
+  const ForesightBy choice = keys.foresee.value_or(cue.has("lap") ? kLap : cue.has("vehicle") ? kDriver : kFade);
+  if (choice == kLap && !cue.has("lap")) cue.fail("foresee", "= 'lap' needs a lap of the same track: [cue.lap]");
   // What is there is read, also where the choice is another one.
   StudyForesight foresight;
   if (cue.has("lap")) {
     foresight.lap_drive = read_lap(cue, study);
     foresight.lap = foresight_of(cue, *foresight.lap_drive);
   }
-  if (cue.has("vehicle") || choice == "driver") foresight.driver = read_driver_foresight(root, cue, study);
-  if (choice != "lap") foresight.lap.reset();
-  if (choice != "driver") foresight.driver.reset();
+  if (cue.has("vehicle") || choice == kDriver) foresight.driver = read_driver_foresight(root, cue, study);
+  if (choice != kLap) foresight.lap.reset();
+  if (choice != kDriver) foresight.driver.reset();
   return foresight;
 }
 
-Cue read_cue(const StudyTable& table) {
-  std::vector<std::string> names;
-  for (const Cue cue : kAllCues) names.emplace_back(name_of(cue));
-  const std::string name = table.choice_or("cue", names, names.front());
-  return static_cast<Cue>(std::find(names.begin(), names.end(), name) - names.begin());
+std::vector<MaskPoint> mask_points(const StudyTable& table, const MaskTable& keys) {
+  const std::vector<double>& at = keys.frequency;
+  if (at.size() < 2 || !std::is_sorted(at.begin(), at.end(), std::less_equal<>()))
+    table.fail("frequency", "takes two frequencies at least, growing");
+  std::vector<MaskPoint> points(at.size());
+  const auto column = [&](const char* key, const std::vector<double>& values, double MaskPoint::*member) {
+    if (!table.has(key)) return;
+    if (values.size() != at.size())
+      table.fail(key, fmt::format("has {} values for {} frequencies", values.size(), at.size()));
+    for (std::size_t i = 0; i < at.size(); ++i) points[i].*member = values[i];
+  };
+  column("frequency", at, &MaskPoint::frequency);
+  column("least_gain", keys.least_gain, &MaskPoint::least_gain);
+  column("most_gain", keys.most_gain, &MaskPoint::most_gain);
+  column("least_phase", keys.least_phase, &MaskPoint::least_phase);
+  column("most_phase", keys.most_phase, &MaskPoint::most_phase);
+  return points;
 }
 
 ResponseStudy read_response(const StudyTable& table) {
-  ResponseStudy r;
-  r.options.force = table.positive_or("force", "m/s^2", r.options.force);
-  r.options.rate = table.positive_or("rate", "rad/s", r.options.rate);
-  if (table.has("frequencies")) {
-    r.options.frequencies = table.numbers("frequencies", "rad/s");
-    for (const double f : r.options.frequencies) {
-      if (!(f > 0.0 && f <= 50.0))
-        table.fail("frequencies", fmt::format("holds {}; takes more than 0 and up to 50 rad/s", f));
-    }
-  }
+  ResponseStudy r{.options = response_keys().read(table)};
   for (const StudyTable& of : table.tables("mask")) {
-    const std::vector<double> at = of.numbers("frequency", "rad/s");
-    std::vector<MaskPoint> points(at.size());
-    const auto column = [&](const char* key, const char* unit, double MaskPoint::*member) {
-      if (!of.has(key)) return;
-      const std::vector<double> values = of.numbers(key, unit);
-      if (values.size() != at.size())
-        of.fail(key, fmt::format("has {} values for {} frequencies", values.size(), at.size()));
-      for (std::size_t i = 0; i < at.size(); ++i) points[i].*member = values[i];
-    };
-    for (std::size_t i = 0; i < at.size(); ++i) points[i].frequency = at[i];
-    if (at.size() < 2 || !std::is_sorted(at.begin(), at.end(), std::less_equal<>()))
-      of.fail("frequency", "takes two frequencies at least, growing");
-    column("least_gain", "1", &MaskPoint::least_gain);
-    column("most_gain", "1", &MaskPoint::most_gain);
-    column("least_phase", "rad", &MaskPoint::least_phase);
-    column("most_phase", "rad", &MaskPoint::most_phase);
-    r.mask[read_cue(of)] = points;
+    const MaskTable mask = MaskTable::keys().read(of);
+    r.mask[mask.cue] = mask_points(of, mask);
   }
   return r;
 }
@@ -251,30 +222,22 @@ std::vector<std::string> described(WashoutDesign& design) {
   return all;
 }
 
-}  // namespace
-
-namespace {
-
 /// All but the drive and what is foreseen of it.
-CueingStudy read_rig(const StudyTable& root) {
+CueingStudy read_rig(const StudyTable& root, const CueTable& keys) {
   CueingStudy s;
   s.title = root.text_or("title", "");
   s.seed = static_cast<std::uint64_t>(root.integer_or("seed", 1));
-  const StudyTable cue = root.table_or_empty("cue");
   s.platform = root.has("platform") ? Platform::read(root.table("platform")) : built_in_platform("three_axis");
   if (root.has("platform") && root.table("platform").has("file"))
     s.inputs.push_back(root.table("platform").file("file"));
-  s.algorithms = read_algorithms(root, cue, s.platform);
-  std::vector<std::string> models;
-  for (const VestibularModel& m : vestibular_models()) models.push_back(m.name);
-  s.perception = cue.choice_or("perception", models, s.perception);
-  s.optimum = cue.flag_or("optimum", true);
-  s.knobs = cue.flag_or("knobs", false);
-  const std::vector<std::string> thresholds = {"usual", "reid_nahon"};
-  if (cue.choice_or("thresholds", thresholds, "usual") == "reid_nahon") s.thresholds = reid_nahon_thresholds();
+  s.algorithms = read_algorithms(root, root.table_or_empty("cue"), keys, s.platform);
+  s.perception = keys.perception;
+  s.optimum = keys.optimum;
+  s.knobs = keys.knobs;
+  if (keys.reid_nahon) s.thresholds = reid_nahon_thresholds();
   if (root.has("omct")) s.response = read_response(root.table("omct"));
-  s.motion = motion_options(cue);
-  s.driver = place(cue, "driver");
+  s.motion = keys.motion;
+  s.driver = keys.driver;
   return s;
 }
 
@@ -283,9 +246,10 @@ CueingStudy read_rig(const StudyTable& root) {
 CueingStudy read_study_without_drive(const Study& study) {
   const StudyTable& root = study.root();
   const StudyTable cue = root.table_or_empty("cue");
-  CueingStudy s = read_rig(root);
-  const std::vector<std::string> choices = {"fade"};
-  static_cast<void>(cue.choice_or("foresee", choices, "fade"));
+  const CueTable keys = CueTable::keys().read(cue);
+  CueingStudy s = read_rig(root, keys);
+  if (keys.foresee.value_or(ForesightBy::kFade) != ForesightBy::kFade)
+    cue.fail("foresee", "must be \"fade\": live, a lap and the driver's intentions are not known");
   for (const char* key : {"lap", "vehicle"}) {
     if (cue.has(key)) cue.fail(key, "needs a drive that is known; live, forces are foreseen by fade only");
   }
@@ -296,15 +260,12 @@ CueingStudy read_study_without_drive(const Study& study) {
 CueingStudy read_study(const Study& study, Progress& progress) {
   const StudyTable& root = study.root();
   const StudyTable cue = root.table_or_empty("cue");
-  CueingStudy s = read_rig(root);
+  const CueTable keys = CueTable::keys().read(cue);
+  CueingStudy s = read_rig(root, keys);
   root.accept("live");  // of `veridyn cue --live`
   if (root.has("tune")) {
     const StudyTable tune = root.table("tune");
-    s.tune.emplace();
-    const long long evaluations = tune.integer_or("evaluations", static_cast<long long>(s.tune->evaluations));
-    if (evaluations < 1) tune.fail("evaluations", fmt::format("is {}; must be above 0", evaluations));
-    s.tune->evaluations = static_cast<std::size_t>(evaluations);
-    s.tune->strength = tune.positive_or("strength", "1", s.tune->strength);
+    s.tune = tuning_keys().read(tune);
     if (tune.has("data")) {
       DrivenMotion on = recorded(tune.table("data"), s.motion, s.driver);
       account_for(on, s);
@@ -315,7 +276,7 @@ CueingStudy read_study(const Study& study, Progress& progress) {
   account_for(drive, s);
   s.drive = std::move(drive.name);
   s.vehicle = std::move(drive.samples);
-  const StudyForesight foresight = read_foresight(root, cue, s);
+  const StudyForesight foresight = read_foresight(root, cue, keys, s);
   if (foresight.lap_drive) account_for(*foresight.lap_drive, s);
   for (const StudyAlgorithm& a : s.algorithms) foresight.give_to(*a.design);
   return s;

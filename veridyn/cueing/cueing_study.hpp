@@ -31,35 +31,9 @@ struct ResponseStudy {
   std::map<Cue, std::vector<MaskPoint>> mask;
 };
 
-/// A study of how a platform renders a drive.
-///
-///     seed = 1
-///     [cue]
-///     algorithms = ["classical", "optimal"]   # see washout_algorithms; "classical" when left out
-///     preset = "medium"                        # and other settings, see DriverSettings
-///     perception = "young_meiry"               # see vestibular_models
-///     thresholds = "usual"                     # or "reid_nahon"
-///     driver = [0.1, 0.35, 0.5]                # driver's head from the centre of gravity: forward, left, up [m]
-///     optimum = true                           # how small the perceived error could be with the drive known before
-///     sensor = [0, 0, 0]                       # the same of the recorded accelerometer
-///     gravity = "in"                           # or "out": whether accelerations hold gravity; decided by accel_z
-///     knobs = false                            # what each knob does, on a short drive of its own
-///     foresee = "fade"                         # how `mpc` foresees forces: or "lap", "driver"
-///     [cue.lap]                                # as [data]: a lap of the same track, driven before
-///     [cue.vehicle]                            # as [subject]: steering and pedals through this model; the simulated
-///                                              # vehicle when left out
-///     [data]                                   # a recorded drive, see vehicle::read_drive_log; or
-///     [subject], [drive], [road]               # a simulated one, see vehicle::read_simulation_study
-///     [platform]                               # see Platform::read
-///     [washout.classical]                      # numbers of that algorithm: its knobs
-///     [omct]                                   # measure gain and phase of the chain
-///     force = 0.5, rate = "2 deg/s", frequencies = [0.1, 1, 10]
-///     [[omct.mask]]                            # where the response has to be; lines between its frequencies
-///     cue = "surge", frequency = [0.1, 10], least_gain = [0.5, 0.5], most_gain = [1, 1]
-///     least_phase = ["-45 deg", "-45 deg"]     # and most_phase
-///     [tune]                                   # turn the knobs on this drive, or on another one
-///     evaluations = 150
-///     [tune.data]                              # as [data]
+/// A study of how a platform renders a drive: `[cue]`, `[platform]`, `[washout.NAME]`, `[omct]`, `[tune]`, and the
+/// drive in `[data]` (`vehicle::read_drive_log`) or `[subject]`, `[drive]`, `[road]`
+/// (`vehicle::read_simulation_study`).
 struct CueingStudy {
   std::string title;
   std::uint64_t seed = 1;

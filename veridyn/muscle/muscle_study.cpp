@@ -13,18 +13,11 @@
 namespace veridyn::muscle {
 namespace {
 
-MuscleMethod read_method(const StudyTable& motion) {
-  const std::vector<std::string> names(kMuscleMethodNames.begin(), kMuscleMethodNames.end());
-  const std::string name = motion.choice_or("method", names, names.front());
-  return static_cast<MuscleMethod>(std::find(names.begin(), names.end(), name) - names.begin());
-}
-
 /// The motion of `file`.
-internal::ReadFromFiles<Motion> read_motion_file(const StudyTable& motion, const MuscleStudy& study) {
-  internal::ReadFromFiles<Motion> read{.value = {}, .inputs = {motion.file("file")}};
-  MotionOptions options;
-  if (motion.has("low_pass")) options.low_pass_Hz = motion.positive("low_pass", "1/s");
-  read.value = make_motion(read_signals(read.inputs.front()), study.system->model(), options);
+internal::ReadFromFiles<Motion> read_motion_file(const MotionTable& keys, const MuscleStudy& study) {
+  internal::ReadFromFiles<Motion> read{.value = {}, .inputs = {*keys.file}};
+  read.value = make_motion(read_signals(*keys.file), study.system->model(),
+                           {.low_pass_Hz = keys.low_pass_Hz.value_or(MotionOptions{}.low_pass_Hz)});
   for (const std::string& name : read.value.beyond_range)
     read.warnings.push_back(fmt::format("the desired '{}' leaves its range", name));
   for (const int c : study.system->reduction().driven()) {
@@ -40,10 +33,10 @@ struct Times {
 };
 
 /// Beginning and duration; those of a motion's file, where there is one, unless the study says otherwise.
-Times read_times(const StudyTable& motion, const Motion* file) {
+Times read_times(const StudyTable& motion, const MotionTable& keys, const Motion* file) {
   Times times;
-  times.begin = motion.number_or("begin", "s", file != nullptr ? file->begin : 0.0);
-  times.end = times.begin + motion.positive_or("duration", "s", file != nullptr ? file->end - times.begin : 1.0);
+  times.begin = keys.begin.value_or(file != nullptr ? file->begin : 0.0);
+  times.end = times.begin + keys.duration.value_or(file != nullptr ? file->end - times.begin : 1.0);
   if (file != nullptr && !(times.end > times.begin))
     motion.fail("begin", fmt::format("{:g} s is at or after the end of the motion, {:g} s", times.begin, file->end));
   const double slack = 1e-9 * (1.0 + std::abs(times.end));
@@ -57,15 +50,12 @@ Times read_times(const StudyTable& motion, const Motion* file) {
   return times;
 }
 
-double read_rate(const StudyTable& motion, const MuscleStudy& study) {
-  const double rate_Hz = motion.positive_or("rate", "1/s", study.rate_Hz);
-  if (!(rate_Hz * (study.end - study.begin) <= 1e7))
-    motion.fail("rate", fmt::format("{:g} Hz makes more than 10 million rows", rate_Hz));
-  return rate_Hz;
+void check_rate(const StudyTable& motion, const MuscleStudy& study) {
+  if (!(study.rate_Hz * (study.end - study.begin) <= 1e7))
+    motion.fail("rate", fmt::format("{:g} Hz makes more than 10 million rows", study.rate_Hz));
 }
 
-ControlOptions read_control(const StudyTable& table, const MuscleStudy& study) {
-  ControlOptions o = internal::read_control_options(table);
+ControlOptions control_of(const StudyTable& table, ControlOptions o, const MuscleStudy& study) {
   if (study.method == MuscleMethod::kComputedMuscleControl && !(o.window <= study.end - study.begin)) {
     table.fail("window", fmt::format("{:g} s is longer than the motion, {:g} s", o.window, study.end - study.begin));
   }
@@ -77,15 +67,7 @@ ControlOptions read_control(const StudyTable& table, const MuscleStudy& study) {
   return o;
 }
 
-StaticOptimizationOptions read_static(const StudyTable& table, const MuscleStudy& study) {
-  StaticOptimizationOptions o;
-  o.exponent = table.number_or("exponent", "1", o.exponent);
-  if (!(o.exponent > 1.0 && o.exponent <= 100.0))
-    table.fail("exponent", fmt::format("{:g} must be above 1, at most 100", o.exponent));
-  constexpr internal::Words<StaticForce, 3> kForces{{{"with passive", StaticForce::kWithPassive},
-                                                     {"as opensim", StaticForce::kAsOpenSim},
-                                                     {"without physiology", StaticForce::kIsometric}}};
-  o.force = internal::word_or_first(table, "formulation", kForces);
+StaticOptimizationOptions static_of(StaticOptimizationOptions o, const MuscleStudy& study) {
   if (std::any_of(study.reserves.begin(), study.reserves.end(), [](double r) { return r > 0.0; }))
     o.reserve = study.reserves;
   return o;
@@ -106,34 +88,21 @@ void refuse_other_methods(const StudyTable& motion, MuscleMethod method) {
   }
 }
 
-std::optional<MetabolicOptions> read_metabolic(const StudyTable& motion, const MuscleStudy& study) {
-  constexpr internal::Words<std::optional<MetabolicModel>, 3> kModels{{{"none", std::nullopt},
-                                                                       {"umberger", MetabolicModel::kUmberger2003},
-                                                                       {"bhargava", MetabolicModel::kBhargava2004}}};
-  const std::optional<MetabolicModel> model = internal::word_or_first(motion, "metabolic_cost", kModels);
+std::optional<MetabolicOptions> read_metabolic(const StudyTable& motion, const MotionTable& keys,
+                                               const MuscleStudy& study) {
   const StudyTable shares = motion.table_or_empty("slow_twitch");
   MetabolicOptions options;
   options.slow_twitch.assign(study.system->muscles().size(), 0.5);
   for (const std::string& key : shares.keys()) {
     const std::size_t muscle = internal::muscle_of(shares, key, key, study.system->model());
-    options.slow_twitch[muscle] = shares.number(key, "1");
-    if (!(options.slow_twitch[muscle] >= 0.0 && options.slow_twitch[muscle] <= 1.0))
-      shares.fail(key, fmt::format("{:g} must be from 0 to 1", options.slow_twitch[muscle]));
+    options.slow_twitch[muscle] = veridyn::internal::number_in(shares, key, "1", from_to(0.0, 1.0));
   }
-  if (!model) return std::nullopt;
+  if (!keys.metabolic) return std::nullopt;
   if (study.method == MuscleMethod::kInverseDynamics)
     motion.fail("metabolic_cost", "inverse dynamics finds no activations that could cost");
-  options.model = *model;
-  options.aerobic_factor = motion.number_or("aerobic_factor", "1", options.aerobic_factor);
+  options.model = *keys.metabolic;
+  options.aerobic_factor = keys.aerobic_factor;
   return options;
-}
-
-std::optional<ReactionFrame> read_reactions(const StudyTable& motion) {
-  constexpr internal::Words<std::optional<ReactionFrame>, 4> kFrames{{{"none", std::nullopt},
-                                                                      {"child", ReactionFrame::kChild},
-                                                                      {"parent", ReactionFrame::kParent},
-                                                                      {"ground", ReactionFrame::kGround}}};
-  return internal::word_or_first(motion, "joint_reactions", kFrames);
 }
 
 /// A contact of the model and an external load would press on one body twice.
@@ -160,43 +129,44 @@ MuscleStudy read_study(const Study& source, Progress& progress) {
   const StudyTable& root = source.root();
   static_cast<void>(root.integer_or("seed", 1));  // nothing here is random, but `--seed` sets it
   const StudyTable motion = root.table("motion");
-  const MuscleMethod method = read_method(motion);
+  const MotionTable keys = MotionTable::keys().read(motion);
+  const MuscleMethod method = keys.method;
   refuse_other_methods(motion, method);
   MuscleStudy study{internal::read_subject(root, progress)};
   study.method = method;
   study.motion.coordinate.resize(study.system->model().coordinates.size());
-  const bool file = method != MuscleMethod::kForward && motion.has("file");
-  if (file) study.motion = internal::remembered(read_motion_file(motion, study), study);
-  const Times times = read_times(motion, file ? &study.motion : nullptr);
+  const bool file = method != MuscleMethod::kForward && keys.file;
+  if (file) study.motion = internal::remembered(read_motion_file(keys, study), study);
+  const Times times = read_times(motion, keys, file ? &study.motion : nullptr);
   study.begin = times.begin;
   study.end = times.end;
-  study.rate_Hz = read_rate(motion, study);
-  study.accuracy = internal::read_accuracy(motion, study.accuracy);
-  study.reserves = internal::read_reserves(motion, study.system->model());
+  study.rate_Hz = keys.rate_Hz;
+  check_rate(motion, study);
+  study.accuracy = keys.accuracy;
+  study.reserves = internal::read_reserves(motion, keys.reserve_force, study.system->model());
   study.start = internal::read_start(motion, study);
-  study.controls = internal::remembered(internal::read_excitations(motion, study), study);
+  study.controls = internal::remembered(internal::read_excitations(motion, keys, study), study);
   if (method == MuscleMethod::kForward) {
-    study.start = internal::remembered(internal::read_start_file(motion, study), study);
+    study.start = internal::remembered(internal::read_start_file(motion, keys, study), study);
   } else {
     internal::DesiredMotion desired = internal::read_desired_motion(motion, study);
     study.motion = std::move(desired.motion);
     study.desired_coordinates = std::move(desired.coordinates);
   }
-  study.reactions = read_reactions(motion);
-  study.metabolic = read_metabolic(motion, study);
-  study.induced_accelerations = motion.flag_or("induced_accelerations", false);
+  study.reactions = keys.reactions;
+  study.metabolic = read_metabolic(motion, keys, study);
+  study.induced_accelerations = keys.induced_accelerations;
   if (study.induced_accelerations && study.method == MuscleMethod::kInverseDynamics)
     motion.fail("induced_accelerations", "inverse dynamics finds no forces of muscles that could contribute");
-  study.motion.external = internal::remembered(internal::read_external_loads(motion, study), study);
+  study.motion.external = internal::remembered(internal::read_external_loads(motion, keys, study), study);
   study.controls.external = study.motion.external;
   check_contact(root.table("subject"), study);
-  // Read in any case, so that a study can keep them while its method changes.
-  study.control = read_control(motion.table_or_empty("control"), study);
-  study.static_optimization = read_static(motion.table_or_empty("static_optimization"), study);
+  study.control = control_of(motion.table_or_empty("control"), keys.control, study);
+  study.static_optimization = static_of(keys.static_optimization, study);
   // Tables of `read_task_study`: one study may say what is simulated and what is estimated.
-  const std::vector<std::string> keys = root.keys();
+  const std::vector<std::string> tables = root.keys();
   for (const char* key : {"tasks", "task", "parameter", "output", "person", "identify", "sensitivity"})
-    if (std::find(keys.begin(), keys.end(), key) != keys.end()) root.accept(key);
+    if (std::find(tables.begin(), tables.end(), key) != tables.end()) root.accept(key);
   root.finish();
   return study;
 }

@@ -7,8 +7,9 @@
 
 namespace veridyn::report {
 
-/// The report of `veridyn cue`: how close to the drive each algorithm felt, with intervals; where they differ beyond
-/// them; false cues; what the platform used; time histories; gain and phase with their mask; tuned knobs.
+/// The report of `veridyn cue`: how close each algorithm comes to the felt motion of the drive, with intervals; where
+/// they differ beyond them; false cues; what the platform used; time histories; gain and phase with their mask; tuned
+/// knobs.
 [[nodiscard]] Document cueing_report(const cueing::CueingStudy& study, const cueing::CueingResult& result,
                                      const std::string& program);
 

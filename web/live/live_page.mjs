@@ -55,7 +55,7 @@ test('values move while the rig runs', { skip }, async () => {
   assert.ok((await page.$$('#latency rect')).length > 3);
 });
 
-test('the platform is drawn in space, where it is and where it is told to be, and can be turned', { skip }, async () => {
+test('the platform is drawn in space, where it is and where it is commanded to be, and can be turned', { skip }, async () => {
   assert.equal((await page.$$('#platform .leg')).length, 3);
   assert.equal((await page.$$('#platform .told')).length, 1);
   const plate = () => page.getAttribute('#platform .reached', 'points');

@@ -19,6 +19,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/study.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/report/document/html.hpp"
 
 namespace veridyn::app {
@@ -99,7 +100,7 @@ int fuse_drive(const Arguments& arguments) {
   const CommonOptions& common = arguments.common;
   OutputFolder folder(common.out);
   const Study options = options_of(arguments);
-  const FusionOptions fusion = FusionOptions::read(options.root().table_or_empty("fusion"));
+  const FusionOptions fusion = FusionOptions::keys().read(options.root().table_or_empty("fusion"));
   options.root().finish();
   const std::filesystem::path inertial = arguments.text("INERTIAL"), poses = arguments.text("--poses");
   const FusedDrive drive = fuse(read_inertial(inertial), read_poses(poses), fusion);

@@ -8,9 +8,11 @@ namespace veridyn::app {
 
 namespace {
 
-int without_camera(const Arguments& /*arguments*/) {
+[[noreturn]] void refuse_camera() {
   throw InputError("camera", "this program was built without it: OpenCV was missing (run tools/setup.sh)");
 }
+
+int without_camera(const Arguments& /*arguments*/) { refuse_camera(); }
 
 }  // namespace
 
@@ -27,6 +29,8 @@ Command rig_camera_command() {
           .example = "veridyn rig camera --help",
           .run = without_camera};
 }
+
+std::vector<StudyKeys> camera_keys() { refuse_camera(); }
 
 void check_camera(const Study& study) {
   if (study.root().table("live").has("camera"))

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "veridyn/camera/camera_keys.hpp"
 #include "veridyn/camera/fusion/fused_drive.hpp"
 
 namespace veridyn::app {
@@ -15,12 +16,14 @@ using namespace veridyn::camera;
 
 FusionOptions fusion_of(const Study& study) {
   const StudyTable table = study.root().table("live").table("camera").table_or_empty("fusion");
-  FusionOptions options = FusionOptions::read(table);
+  FusionOptions options = FusionOptions::keys().read(table);
   table.finish();
   return options;
 }
 
 }  // namespace
+
+std::vector<StudyKeys> camera_keys() { return camera::study_keys(); }
 
 std::string camera_delay_toml(const FusedRun& run) {
   // The shortest way, beyond which the offset counts, is another one in each run, by some milliseconds.

@@ -3,8 +3,9 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "veridyn/core/study.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/live/rig/live_replay.hpp"
 
 namespace veridyn::app {
@@ -16,6 +17,8 @@ struct FusedRun {
   double offset = 0.0, sigma_offset = 0.0;  ///< of the camera's stamps beyond what the shortest way explains [s]
 };
 
+/// The keys of `veridyn camera` and `[live.camera]`. @throws InputError in a program without the camera
+[[nodiscard]] std::vector<StudyKeys> camera_keys();
 /// What was found of the camera's stamps, as keys of a study that begins with it.
 [[nodiscard]] std::string camera_delay_toml(const FusedRun& run);
 /// Reads `[live.camera.fusion]` where the study has a camera. @throws InputError for what is wrong in it, and in a

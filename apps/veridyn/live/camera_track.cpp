@@ -21,6 +21,7 @@
 #include "veridyn/camera/tracking/video_frames.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/study.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/live/time/clock.hpp"
 
 namespace veridyn::app {
@@ -33,8 +34,8 @@ class Follower {
  public:
   Follower(const Calibration& map, const Study& options, bool by_silhouette)
       : map_(map),
-        tracker_(map, TrackerOptions::read(options.root().table_or_empty("tracker"))),
-        silhouettes_(SilhouetteOptions::read(options.root().table_or_empty("silhouette"))),
+        tracker_(map, TrackerOptions::keys().read(options.root().table_or_empty("tracker"))),
+        silhouettes_(SilhouetteOptions::keys().read(options.root().table_or_empty("silhouette"))),
         by_silhouette_(by_silhouette) {}
 
   const TrackedPose& add(double time, const GreyView& view) {
@@ -148,7 +149,7 @@ int track(const Arguments& arguments) {
   const Study options = Study::parse("", "--set", {}, common.overrides);
   const std::filesystem::path source = arguments.text("VIDEO"), calibration = arguments.text("--calibration");
   Follower follower(read_calibration(calibration), options, arguments.text("--method") == "silhouette");
-  const CameraDeviceOptions asked = CameraDeviceOptions::read(options.root().table_or_empty("device"));
+  const CameraDeviceOptions asked = CameraDeviceOptions::keys().read(options.root().table_or_empty("device"));
   options.root().finish();
   // The library behind OpenCV writes lines of its own about files that are no video; -8 is its "quiet".
   ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);

@@ -99,7 +99,8 @@ int rig_platform(const Arguments& arguments) {
 /// The vehicle of a study and what it is called: on the circuit, or on the study's drive.
 std::pair<std::string, VirtualVehicle> driven_vehicle(const Study& file, const LiveStudy& study,
                                                       const CommonOptions& options) {
-  const VirtualVehicleOptions sending = read_virtual_vehicle(file.root().table("live"));
+  const VirtualVehicleOptions sending =
+      virtual_vehicle_keys().read(file.root().table("live").table_or_empty("vehicle"));
   if (study.circuit) {
     const auto car = vehicle::read_vehicle(file.root().table("subject"), vehicle::VehicleNeeds::kFourWheel);
     return {car.name + " on the circuit",

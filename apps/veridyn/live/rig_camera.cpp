@@ -18,6 +18,7 @@
 #include "veridyn/camera/tracking/video_frames.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/io/packets/known_packets.hpp"
 #include "veridyn/io/packets/packet_decoder.hpp"
 #include "veridyn/live/rig/live_study.hpp"
@@ -59,7 +60,7 @@ class TruthReceiver {
 };
 
 camera::TrackerOptions tracker_of(const StudyTable& table) {
-  camera::TrackerOptions options = camera::TrackerOptions::read(table);
+  camera::TrackerOptions options = camera::TrackerOptions::keys().read(table);
   if (!table.has("markers_x")) options.layout.markers = kMarkers.markers;
   table.finish();
   return options;
@@ -77,7 +78,7 @@ int rig_camera(const Arguments& arguments) {
   const StudyTable table = live.table("camera");
   const camera::TrackerOptions tracking = tracker_of(table.table_or_empty("tracker"));
   const StudyTable view_table = table.table_or_empty("view");
-  const camera::VirtualCameraOptions view = camera::VirtualCameraOptions::read(view_table);
+  const camera::VirtualCameraOptions view = camera::VirtualCameraOptions::keys().read(view_table);
   view_table.finish();
   OutputFolder folder(common.out);
   camera::VirtualCamera seen(view, tracking.layout, study.cueing.seed);

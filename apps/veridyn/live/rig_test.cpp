@@ -1,5 +1,5 @@
-// veridyn rig test STUDY: a platform told by hand (home, zero, pose, force, min, max, wave, steps, sweep), and how it
-// follows.
+// veridyn rig test STUDY: a platform commanded by hand (home, zero, pose, force, min, max, wave, steps, sweep), and how
+// it follows.
 #include "apps/veridyn/live/rig_test.hpp"
 
 #include <fmt/format.h>
@@ -59,7 +59,7 @@ class PlatformByHand {
       line_.emplace(study.platform_line);
   }
 
-  /// One order at its time. @return where the axis was told to be
+  /// One order at its time. @return where the axis was commanded to be
   double command(PlatformAxis axis, double wanted) {
     clock_.sleep_until(rate_.next());
     cueing::PlatformState to;
@@ -173,7 +173,7 @@ double position_asked_for(const std::string& text, TestSignal signal, PlatformAx
   return position;
 }
 
-/// The platform that was measured: each axis as it follows, and where it reaches less or more than it is told.
+/// The platform that was measured: each axis as it follows, and where it reaches less or more than commanded.
 cueing::Platform measured_platform(const LiveStudy& study, const std::map<PlatformAxis, PlatformResponse>& responses) {
   cueing::Platform p = study.cueing.platform;
   for (const auto& [axis, r] : responses) {
@@ -277,7 +277,7 @@ Command rig_test_command() {
       .arguments =
           {{.name = "STUDY", .help = "study file with [live]", .required = true},
            {.name = "--axis", .help = "of the platform; all: one after the other", .value = std::string("all")},
-           {.name = "--signal", .help = "what it is told", .value = std::string("sweep"), .choices = signal_names()},
+           {.name = "--signal", .help = "what is commanded", .value = std::string("sweep"), .choices = signal_names()},
            {.name = "--value", .help = "of pose (5deg, 20mm) or force (1.5m/s^2)", .value = std::string("")},
            {.name = "--size", .help = "share of what the limits allow", .value = 0.5, .positive = true},
            {.name = "--frequency", .help = "of wave and steps [Hz]", .value = 0.5, .positive = true},

@@ -8,6 +8,7 @@
 #include "tests/support/refusal.hpp"
 #include "veridyn/camera/tracking/car_tracker.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::camera {
 namespace {
@@ -72,7 +73,7 @@ TEST(VirtualCamera, IsRefusedWhereItCouldNotTellTheMarkers) {
           "live.camera.view: on a picture of 1920 x 1080 px of 100 x 10 m the car's markers are 3.2 px apart; must "
           "be at least 12"));
   const auto read = [](const std::string& text) {
-    return VirtualCameraOptions::read(Study::parse(text, "rig.toml").root());
+    return VirtualCameraOptions::keys().read(Study::parse(text, "rig.toml").root());
   };
   const VirtualCameraOptions o = read("x = [\"-3 m\", \"400 cm\"]\nwidth = 800\nheight = 600\nrate = \"25 Hz\"\n");
   EXPECT_EQ(o.x[0], -3.0);
@@ -80,7 +81,7 @@ TEST(VirtualCamera, IsRefusedWhereItCouldNotTellTheMarkers) {
   EXPECT_EQ(o.width, 800);
   EXPECT_EQ(o.rate_Hz, 25.0);
   EXPECT_THAT(why([&] { (void)read("x = [3, -3]\n"); }), HasSubstr("rig.toml:1: x: must be two numbers"));
-  EXPECT_THAT(why([&] { (void)read("width = 10\n"); }), HasSubstr("must be 64 to 8192 px"));
+  EXPECT_THAT(why([&] { (void)read("width = 10\n"); }), HasSubstr("= 10 must be from 64 to 8192"));
   EXPECT_THAT(why([&] { (void)read("rate = 30\nexposure = \"50 ms\"\n"); }), HasSubstr("exposure: = 0.05 s"));
 }
 

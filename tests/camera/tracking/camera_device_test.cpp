@@ -8,6 +8,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/files.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::camera {
 namespace {
@@ -19,7 +20,7 @@ std::string refused_device(const std::filesystem::path& device) {
 }
 
 CameraDeviceOptions read(const std::string& text) {
-  return CameraDeviceOptions::read(Study::parse(text, "set.toml").root());
+  return CameraDeviceOptions::keys().read(Study::parse(text, "set.toml").root());
 }
 
 // Pictures of a camera come in tests/apps/camera_program_test.cpp, from a driver that is loaded before the program.
@@ -42,8 +43,8 @@ TEST(CameraDevice, OptionsAreWhatIsAskedOfIt) {
   EXPECT_EQ(o.format, "MJPG");
   EXPECT_EQ(read("").width, 0);
   EXPECT_THAT(why([] { (void)read("width = 1280\n"); }), HasSubstr("width: needs the other one"));
-  EXPECT_THAT(why([] { (void)read("height = -1\nwidth = 4\n"); }), HasSubstr("height: = -1 must be above 0"));
-  EXPECT_THAT(why([] { (void)read("rate = -5\n"); }), HasSubstr("rate: = -5 Hz must be 0 to 1000 Hz"));
+  EXPECT_THAT(why([] { (void)read("height = -1\nwidth = 4\n"); }), HasSubstr("height: = -1 must be from 0"));
+  EXPECT_THAT(why([] { (void)read("rate = -5\n"); }), HasSubstr("rate: = -5 must be from 0 to 1000"));
   EXPECT_THAT(why([] { (void)read("format = \"JPEG2\"\n"); }), HasSubstr("must be four letters"));
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::cueing {
 namespace {
@@ -17,7 +18,7 @@ std::vector<double> values_of(WashoutDesign& design, const std::string& name) {
 
 DriverSettings settings_of(const std::string& text) {
   const Study study = Study::parse("[cue]\n" + text, "rig.toml");
-  return DriverSettings::read(study.root().table("cue"));
+  return DriverSettings::keys().read(study.root().table("cue"));
 }
 
 TEST(DriverSettings, PresetsTurnTheKnobsThatMeanTheSame) {
@@ -52,7 +53,7 @@ TEST(DriverSettings, OutOfRangeIsRefusedWithItsPlace) {
     static_cast<void>(settings_of("instant = 1.5\n"));
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("rig.toml:2: cue.instant: is 1.5; takes 0 to 1"));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("rig.toml:2: cue.instant: = 1.5 must be from 0 to 1"));
   }
 }
 

@@ -82,7 +82,7 @@ TEST(PlatformResponse, SeesWhereAPlatformReachesLess) {
   for (double& v : m.reached) v *= 0.9;
   const PlatformResponse r = fit_response(m);
   EXPECT_NEAR(r.gain.value, 0.9, 0.01);
-  EXPECT_THAT(r.notes, ::testing::Contains(HasSubstr("it reaches 90 % of what it is told")));
+  EXPECT_THAT(r.notes, ::testing::Contains(HasSubstr("it reaches 90 % of what is commanded")));
   for (double& v : m.reached) v *= -1.0;
   EXPECT_THAT(fit_response(m).notes, ::testing::Contains(HasSubstr("wrong sign")));
 }

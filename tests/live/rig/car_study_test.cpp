@@ -47,10 +47,11 @@ TEST(CarStudy, RefusesInOneLineWithItsPlace) {
   EXPECT_THAT(car_refusal("[live.driver]\n"), HasSubstr("names 0 of wheel, events and table; takes one"));
   EXPECT_THAT(car_refusal("[live.driver]\nwheel = '/dev/null'\n"), HasSubstr("live.driver.calibration: is missing"));
   EXPECT_THAT(car_refusal("[live.driver]\ntable = 'a.csv'\n[live.car]\nforce = '2000 N'\n"),
-              HasSubstr("live.car.force: is 2000 N; takes 0.1 to 1600 N"));
+              HasSubstr("live.car.force: = 2000 must be from 0.1 to 1600 N"));
   EXPECT_THAT(car_refusal("[live.driver]\ntable = 'a.csv'\n[live.car]\nbaud = 12\n"),
-              HasSubstr("live.car.baud: is 12"));
-  EXPECT_THAT(car_refusal("[live.driver]\ntable = 'a.csv'\n[live.car]\nsensor = [1, 2]\n"), HasSubstr("three numbers"));
+              HasSubstr("live.car.baud: = 12 must be from 1200"));
+  EXPECT_THAT(car_refusal("[live.driver]\ntable = 'a.csv'\n[live.car]\nsensor = [1, 2]\n"),
+              HasSubstr("has 2 numbers, needs 3"));
   EXPECT_THAT(car_refusal("[live.driver]\ntable = 'a.csv'\n[live.car]\nlien = '/tmp/x'\n"),
               HasSubstr("did you mean 'line'"));
 }

@@ -8,6 +8,7 @@
 
 #include "tests/live/weaving_drive.hpp"
 #include "tests/support/refusal.hpp"
+#include "tests/support/shown_defaults.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "veridyn/cueing/platform/platform_file.hpp"
 
@@ -69,9 +70,11 @@ TEST(LiveStudy, ARecordingHoldsThePlatformOfAFileByItsNumbers) {
   EXPECT_EQ(again.cueing.platform.response(cueing::PlatformAxis::kPitch).delay, 0.03);
 }
 
+TEST(LiveStudy, ShowsDefaultsThatStudiesTake) { veridyn::test::expect_defaults_read_back(study_keys()); }
+
 TEST(LiveStudy, RefusesInOneLineWithItsPlace) {
-  EXPECT_THAT(refusal("rate = '10 Hz'\n"), HasSubstr("rig.toml:8: live.rate: is 10 Hz; takes 20 to 4000 Hz"));
-  EXPECT_THAT(refusal("delay = '2 s'\n"), HasSubstr("live.delay: is 2 s; takes 0 to 0.5 s"));
+  EXPECT_THAT(refusal("rate = '10 Hz'\n"), HasSubstr("rig.toml:8: live.rate: = 10 must be from 20 to 4000 Hz"));
+  EXPECT_THAT(refusal("delay = '2 s'\n"), HasSubstr("live.delay: = 2 must be from 0 to 0.5"));
   EXPECT_THAT(refusal("packet = 'outgauge'\n"),
               HasSubstr("= 'outgauge' is no known packet with a motion (any, outsim,"));
   EXPECT_THAT(refusal("signs = 'never'\n"), HasSubstr("rig.toml:8"));

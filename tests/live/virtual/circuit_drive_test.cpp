@@ -8,6 +8,7 @@
 #include "tests/live/virtual/one_to_five.hpp"
 #include "tests/support/refusal.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/live/telemetry/sign_checker.hpp"
 #include "veridyn/numerics/rotation.hpp"
 
@@ -92,13 +93,13 @@ TEST(CircuitDrive, HasRightSignsOnItsRampsToo) {
 TEST(CircuitDrive, ReadsItsKeysAndRefusesWhatCannotBeDriven) {
   const auto read = [](const std::string& text) {
     const Study study = Study::parse(text, "c.toml");
-    return read_circuit_drive(study.root());
+    return CircuitDriveOptions::keys().read(study.root());
   };
   const CircuitDriveOptions o = read("speed = '2 m/s'\nlaps = 3\ndirection = 'clockwise'\n");
   EXPECT_EQ(o.speed, 2.0);
   EXPECT_EQ(o.laps, 3);
   EXPECT_TRUE(o.clockwise);
-  EXPECT_NE(why([&] { static_cast<void>(read("laps = 0")); }).find("takes 1 to 1000"), std::string::npos);
+  EXPECT_NE(why([&] { static_cast<void>(read("laps = 0")); }).find("from 1 to 1000"), std::string::npos);
   const auto circuit = std::make_shared<vehicle::Circuit>();
   EXPECT_NE(why([&] {
               static_cast<void>(circuit_drive(four_wheel_drive(), circuit, {.speed = 12.0, .laps = 1}, {0, 0, 0}));

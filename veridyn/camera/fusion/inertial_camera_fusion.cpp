@@ -9,6 +9,7 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::camera {
 namespace {
@@ -56,23 +57,34 @@ void FusionOptions::validate() const {
                                            lag_s, std::abs(offset) + 3.0 * offset_sigma));
 }
 
-FusionOptions FusionOptions::read(const StudyTable& table) {
-  FusionOptions o;
-  const auto take = [&](const char* key, double& value) { value = table.positive_or(key, "1", value); };
-  take("gyro", o.noise.gyro);
-  o.noise.gyro_share = table.number_or("gyro_share", "1", o.noise.gyro_share);
-  take("gyro_walk", o.noise.gyro_walk);
-  take("gyro_bias", o.noise.gyro_bias);
-  take("accelerometer", o.noise.accelerometer);
-  take("accelerometer_walk", o.noise.accelerometer_walk);
-  take("accelerometer_bias", o.noise.accelerometer_bias);
-  o.sensor_place = {table.number_or("sensor_x", "m", 0.0), table.number_or("sensor_y", "m", 0.0)};
-  o.offset = table.number_or("offset", "s", o.offset);
-  o.offset_sigma = table.positive_or("offset_sigma", "s", o.offset_sigma);
-  o.inclination_sigma = table.positive_or("inclination_sigma", "rad", o.inclination_sigma);
-  o.lag_s = table.positive_or("lag", "s", o.lag_s);
-  o.longest_gap_s = table.positive_or("longest_gap", "s", o.longest_gap_s);
-  return o;
+const KeyTable<FusionOptions>& FusionOptions::keys() {
+  using O = FusionOptions;
+  using N = InertialNoise;
+  static const auto noise =
+      KeyTable<N>("fusion")
+          .number("gyro", &N::gyro, "1", kPositive, "its noise [rad/s/sqrt(Hz)]")
+          .number("gyro_share", &N::gyro_share, "1", {.low = 0.0, .high = 1.0, .with_high = false},
+                  "errors that grow with the rate, scale and mounting, as noise of this share of it")
+          .number("gyro_walk", &N::gyro_walk, "1", kPositive, "of its bias [rad/s^2/sqrt(Hz)]")
+          .number("gyro_bias", &N::gyro_bias, "1", kPositive, "of its bias at the start, standard deviation [rad/s]")
+          .number("accelerometer", &N::accelerometer, "1", kPositive, "its noise [m/s^2/sqrt(Hz)]")
+          .number("accelerometer_walk", &N::accelerometer_walk, "1", kPositive, "of its bias [m/s^3/sqrt(Hz)]")
+          .number("accelerometer_bias", &N::accelerometer_bias, "1", kPositive,
+                  "of its bias at the start, standard deviation [m/s^2]");
+  const auto coordinate = [](Eigen::Index i) { return [i](O& o) -> double& { return o.sensor_place(i); }; };
+  static const auto table =
+      KeyTable<O>("fusion", "How inertial sensors and camera are fused; in a study `[live.camera.fusion]`.")
+          .with(&O::noise, noise)
+          .number("sensor_x", coordinate(0), "m", kAnyNumber,
+                  "of the inertial sensors, forward of the point whose pose the camera gives")
+          .number("sensor_y", coordinate(1), "m", kAnyNumber, "left of it")
+          .number("offset", &O::offset, "s", kAnyNumber, "of the camera's stamps at the start; positive: they are late")
+          .number("offset_sigma", &O::offset_sigma, "s", kPositive, "of that, standard deviation")
+          .number("inclination_sigma", &O::inclination_sigma, "rad", kPositive, "of pitch and roll at the start")
+          .number("lag", &O::lag_s, "s", kPositive, "frames that arrive up to this late are entered where they belong")
+          .number("longest_gap", &O::longest_gap_s, "s", kPositive,
+                  "between inertial samples; after a longer one the fusion starts again with a frame");
+  return table;
 }
 
 InertialCameraFusion::InertialCameraFusion(const FusionOptions& options) : options_(options) {

@@ -26,11 +26,7 @@ struct FusionOptions {
 
   /// @throws InputError("fusion", ...) naming the option
   void validate() const;
-  /// Study table of these keys: gyro, gyro_share, gyro_walk, gyro_bias, accelerometer, accelerometer_walk,
-  /// accelerometer_bias (numbers in the units of InertialNoise), sensor_x, sensor_y, offset, offset_sigma,
-  /// inclination_sigma, lag, longest_gap.
-  /// @throws InputError with the place of a value that makes no sense
-  [[nodiscard]] static FusionOptions read(const StudyTable& table);
+  [[nodiscard]] static const KeyTable<FusionOptions>& keys();
 };
 
 /// The motion of the car at the time of an inertial sample, with standard deviations. A 95 % band is 1.96 of them.

@@ -8,6 +8,7 @@
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::camera {
@@ -54,38 +55,31 @@ Calibration calibrated(const TrackCamera& camera, const VirtualCameraOptions& o,
   return fit_camera(points);
 }
 
-std::array<double, 2> range_of(const StudyTable& table, const char* key, const std::array<double, 2>& otherwise) {
-  if (!table.has(key)) return otherwise;
-  const std::vector<double> v = table.numbers(key, "m");
-  if (v.size() != 2 || !(v[1] > v[0]))
-    table.fail(key, "must be two numbers, the smaller first, as [\"-5 m\", \"5 m\"]");
-  return {v[0], v[1]};
-}
-
-int size_of(const StudyTable& table, const char* key, int otherwise) {
-  constexpr long long kSmallest_px = 64, kLargest_px = 8192;
-  const long long v = table.integer_or(key, otherwise);
-  if (v < kSmallest_px || v > kLargest_px)
-    table.fail(key, fmt::format("= {} must be {} to {} px", v, kSmallest_px, kLargest_px));
-  return static_cast<int>(v);
+/// The smaller number first.
+void check_extent(const StudyTable& table, const char* key, const std::array<double, 2>& extent) {
+  if (!(extent[1] > extent[0])) table.fail(key, "must be two numbers, the smaller first, as [\"-5 m\", \"5 m\"]");
 }
 
 }  // namespace
 
-VirtualCameraOptions VirtualCameraOptions::read(const StudyTable& table) {
-  VirtualCameraOptions o;
-  o.x = range_of(table, "x", o.x);
-  o.y = range_of(table, "y", o.y);
-  o.width = size_of(table, "width", o.width);
-  o.height = size_of(table, "height", o.height);
-  o.rate_Hz = table.number_or("rate", "Hz", o.rate_Hz);
-  o.exposure_s = table.number_or("exposure", "s", o.exposure_s);
-  if (!(o.rate_Hz >= 1.0 && o.rate_Hz <= 200.0))
-    table.fail("rate", fmt::format("= {:g} Hz must be 1 to 200 Hz", o.rate_Hz));
-  if (!(o.exposure_s >= 0.0 && o.exposure_s <= 1.0 / o.rate_Hz))
-    table.fail("exposure", fmt::format("= {:g} s must be 0 to the time between two pictures, {:.3g} s", o.exposure_s,
-                                       1.0 / o.rate_Hz));
-  return o;
+const KeyTable<VirtualCameraOptions>& VirtualCameraOptions::keys() {
+  using O = VirtualCameraOptions;
+  static const auto table =
+      KeyTable<O>("live.camera.view", "A camera above the virtual car.")
+          .numbers("x", &O::x, "m", kAnyNumber, "of the track, all of which it sees: least, greatest")
+          .numbers("y", &O::y, "m", kAnyNumber, "the same across")
+          .count("width", &O::width, 64, 8192, "of its pictures [px]")
+          .count("height", &O::height, 64, 8192, "of its pictures [px]")
+          .number("rate", &O::rate_Hz, "Hz", from_to(1.0, 200.0), "of its pictures")
+          .number("exposure", &O::exposure_s, "s", kNotNegative, "of a picture, at most the time between two")
+          .check([](const StudyTable& t, O& o) {
+            check_extent(t, "x", o.x);
+            check_extent(t, "y", o.y);
+            if (!(o.exposure_s <= 1.0 / o.rate_Hz))
+              t.fail("exposure", fmt::format("= {:g} s must be 0 to the time between two pictures, {:.3g} s",
+                                             o.exposure_s, 1.0 / o.rate_Hz));
+          });
+  return table;
 }
 
 VirtualCamera::VirtualCamera(const VirtualCameraOptions& options, const MarkerLayout& markers, std::uint64_t seed)

@@ -13,18 +13,14 @@
 
 namespace veridyn::camera {
 
-/// A camera of the virtual rig, from the keys of a study's table `[live.camera.view]`, each of which may be left out:
-///
-///     x = ["-10 m", "10 m"], y = ["-5 m", "5 m"]       # of the track, all of which it sees
-///     width = 1920, height = 1080, rate = "30 Hz", exposure = "4 ms"
+/// A camera of the virtual rig, from `[live.camera.view]`.
 struct VirtualCameraOptions {
   std::array<double, 2> x{-10.0, 10.0}, y{-5.0, 5.0};  ///< [m]
   int width = 1920, height = 1080;                     ///< [px]
   double rate_Hz = 30.0;
   double exposure_s = 0.004;
 
-  /// @throws InputError with the place of a value that makes no sense
-  [[nodiscard]] static VirtualCameraOptions read(const StudyTable& table);
+  [[nodiscard]] static const KeyTable<VirtualCameraOptions>& keys();
 };
 
 /// Sees a car whose motion others simulate, from far above a level track, a little oblique, through a lens with a

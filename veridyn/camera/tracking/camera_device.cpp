@@ -13,6 +13,7 @@
 
 #include "veridyn/camera/tracking/video_library.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::camera {
 namespace {
@@ -49,21 +50,26 @@ std::string internal::camera_refusal(int system_error) {
   }
 }
 
-CameraDeviceOptions CameraDeviceOptions::read(const StudyTable& table) {
-  CameraDeviceOptions o;
-  o.width = static_cast<int>(table.integer_or("width", 0));
-  o.height = static_cast<int>(table.integer_or("height", 0));
-  o.rate_Hz = table.number_or("rate", "Hz", 0.0);
-  o.format = table.text_or("format", "");
-  if (o.width < 0) table.fail("width", fmt::format("= {} must be above 0", o.width));
-  if (o.height < 0) table.fail("height", fmt::format("= {} must be above 0", o.height));
-  if ((o.width == 0) != (o.height == 0))
-    table.fail(o.width == 0 ? "height" : "width", "needs the other one: width and height together");
-  if (!(o.rate_Hz >= 0.0 && o.rate_Hz <= 1000.0))
-    table.fail("rate", fmt::format("= {:g} Hz must be 0 to 1000 Hz", o.rate_Hz));
-  if (!o.format.empty() && o.format.size() != 4)
-    table.fail("format", fmt::format("= \"{}\" must be four letters, as \"MJPG\" or \"YUYV\"", o.format));
-  return o;
+const KeyTable<CameraDeviceOptions>& CameraDeviceOptions::keys() {
+  using O = CameraDeviceOptions;
+  static const char* const kAsSet = "as the camera is set";
+  static const auto table =
+      KeyTable<O>("device", "What is asked of a camera.")
+          .count("width", &O::width, 0, 100'000, "of its pictures, together with `height` [px]")
+          .otherwise(kAsSet)
+          .count("height", &O::height, 0, 100'000, "of its pictures [px]")
+          .otherwise(kAsSet)
+          .number("rate", &O::rate_Hz, "Hz", from_to(0.0, 1000.0), "of its pictures")
+          .otherwise(kAsSet)
+          .text("format", &O::format, "four letters, as `MJPG` or `YUYV`")
+          .otherwise("any that can be read")
+          .check([](const StudyTable& t, O& o) {
+            if ((o.width == 0) != (o.height == 0))
+              t.fail(o.width == 0 ? "height" : "width", "needs the other one: width and height together");
+            if (!o.format.empty() && o.format.size() != 4)
+              t.fail("format", fmt::format("= \"{}\" must be four letters, as \"MJPG\" or \"YUYV\"", o.format));
+          });
+  return table;
 }
 
 struct CameraDevice::Reader {

@@ -10,14 +10,13 @@
 
 namespace veridyn::camera {
 
-/// What is asked of a camera (study keys `device.KEY`).
+/// What is asked of a camera, `[device]`.
 struct CameraDeviceOptions {
   int width = 0, height = 0;  ///< [px]; 0: as the camera is set
-  double rate_Hz = 0.0;       ///< `rate`; 0: as the camera is set
+  double rate_Hz = 0.0;       ///< 0: as the camera is set
   std::string format;         ///< four letters, as "MJPG"; empty: any that can be read
 
-  /// @throws InputError for a size without its other half, a negative value, a format that is not of four letters
-  [[nodiscard]] static CameraDeviceOptions read(const StudyTable& table);
+  [[nodiscard]] static const KeyTable<CameraDeviceOptions>& keys();
 };
 
 /// A picture as a camera took it.

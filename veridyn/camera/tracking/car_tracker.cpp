@@ -9,6 +9,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/numerics/rotation.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -28,21 +29,36 @@ void TrackerOptions::validate() const {
   if (first_heading && !std::isfinite(*first_heading)) throw InputError("tracker", "first_heading must be finite");
 }
 
-TrackerOptions TrackerOptions::read(const StudyTable& table) {
-  TrackerOptions o;
-  if (table.has("markers_x") || table.has("markers_y")) {
-    const std::vector<double> x = table.numbers("markers_x", "m"), y = table.numbers("markers_y", "m");
-    if (x.size() != y.size()) table.fail("markers_y", fmt::format("has {} numbers, markers_x {}", y.size(), x.size()));
-    o.layout.markers.clear();
-    for (std::size_t i = 0; i < x.size(); ++i) o.layout.markers.emplace_back(x[i], y[i]);
-  }
-  o.layout.sigma = table.positive_or("marker_sigma", "m", o.layout.sigma);
-  o.first_heading = table.optional_number("first_heading", "rad");
-  o.blobs.contrast = table.positive_or("contrast", "1", o.blobs.contrast);
-  o.lost_after_s = table.positive_or("lost_after", "s", o.lost_after_s);
-  o.lost_sigma_m = table.positive_or("lost_sigma", "m", o.lost_sigma_m);
-  o.longest_step_s = table.positive_or("longest_step", "s", o.longest_step_s);
-  return o;
+const KeyTable<TrackerOptions>& TrackerOptions::keys() {
+  using O = TrackerOptions;
+  const auto sigma = [](O& o) -> double& { return o.layout.sigma; };
+  const auto contrast = [](O& o) -> double& { return o.blobs.contrast; };
+  static const auto table =
+      KeyTable<O>("tracker", "How a car is followed by its markers; in a study `[live.camera.tracker]`.")
+          .other({"markers_x", "m", "two or three numbers", "[0.1, -0.08, -0.06]",
+                  "of the markers, forward of the car's reference point"},
+                 [](const StudyTable& t, const std::string& key, O& o) {
+                   const std::vector<double> x = t.numbers(key, "m"), y = t.numbers("markers_y", "m");
+                   if (x.size() != y.size())
+                     t.fail("markers_y", fmt::format("has {} numbers, markers_x {}", y.size(), x.size()));
+                   o.layout.markers.clear();
+                   for (std::size_t i = 0; i < x.size(); ++i) o.layout.markers.emplace_back(x[i], y[i]);
+                 })
+          .elsewhere({"markers_y", "m", "as many", "[0, 0.05, -0.04]", "left of it"})
+          .number("marker_sigma", sigma, "m", kPositive, "error of a coordinate of a marker on the car")
+          .number("first_heading", &O::first_heading, "rad", kAnyNumber,
+                  "within 90 deg at the start; two markers look the same from both ends")
+          .otherwise("not known; required with two markers")
+          .number("contrast", contrast, "1", kPositive,
+                  "least height of a marker's peak above the picture's median [grey levels]")
+          .number("lost_after", &O::lost_after_s, "s", kPositive,
+                  "without a measurement; then the car is looked for everywhere again")
+          .number("lost_sigma", &O::lost_sigma_m, "m", kPositive, "of the predicted place; the same")
+          .number("longest_step", &O::longest_step_s, "s", kPositive, "between frames; a longer one is a break")
+          .check([](const StudyTable& t, O&) {
+            if (t.has("markers_y") && !t.has("markers_x")) t.fail("markers_x", "is missing");
+          });
+  return table;
 }
 
 CarTracker::CarTracker(const Calibration& calibration, const TrackerOptions& options)

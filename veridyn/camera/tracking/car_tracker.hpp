@@ -30,10 +30,7 @@ struct TrackerOptions {
 
   /// @throws InputError naming the option
   void validate() const;
-  /// Study table of these keys: markers_x, markers_y [m] (lists of equal length), marker_sigma, first_heading,
-  /// contrast, lost_after, lost_sigma, longest_step.
-  /// @throws InputError with the place of a value that makes no sense
-  [[nodiscard]] static TrackerOptions read(const StudyTable& table);
+  [[nodiscard]] static const KeyTable<TrackerOptions>& keys();
 };
 
 /// How a pose came about.

@@ -10,6 +10,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/numerics/rotation.hpp"
 
 namespace veridyn::camera {
@@ -23,14 +24,21 @@ void SilhouetteOptions::validate() const {
   if (!middle.allFinite()) throw InputError("silhouette", "the middle must be finite");
 }
 
-SilhouetteOptions SilhouetteOptions::read(const StudyTable& table) {
-  SilhouetteOptions o;
-  o.contrast = table.positive_or("contrast", "1", o.contrast);
-  o.learning_frames = table.positive_or("learning_frames", "1", o.learning_frames);
-  o.length = table.positive_or("length", "m", o.length);
-  o.width = table.positive_or("width", "m", o.width);
-  o.middle = {table.number_or("middle_x", "m", 0.0), table.number_or("middle_y", "m", 0.0)};
-  return o;
+const KeyTable<SilhouetteOptions>& SilhouetteOptions::keys() {
+  using O = SilhouetteOptions;
+  const auto coordinate = [](Eigen::Index i) { return [i](O& o) -> double& { return o.middle(i); }; };
+  static const auto table =
+      KeyTable<O>("silhouette", "How a car without markers is distinguished from the track under it.")
+          .number("contrast", &O::contrast, "1", from_to(1.0, 255.0),
+                  "least difference to the background [grey levels]")
+          .number("learning_frames", &O::learning_frames, "1", {.low = 2.0},
+                  "over which the background is averaged; it follows the light of the room")
+          .number("length", &O::length, "m", kPositive, "of the car seen from above, at least 1.2 times its width")
+          .number("width", &O::width, "m", kPositive, "of the car seen from above")
+          .number("middle_x", coordinate(0), "m", kAnyNumber,
+                  "of the silhouette's middle, forward of the car's reference point")
+          .number("middle_y", coordinate(1), "m", kAnyNumber, "left of it");
+  return table;
 }
 
 SilhouetteFinder::SilhouetteFinder(const SilhouetteOptions& options) : options_(options) { options_.validate(); }

@@ -26,9 +26,7 @@ struct SilhouetteOptions {
 
   /// @throws InputError("silhouette", ...) for values that make no sense
   void validate() const;
-  /// Study table of these keys: contrast, learning_frames, length, width, middle_x, middle_y [m].
-  /// @throws InputError with the place of a value that makes no sense
-  [[nodiscard]] static SilhouetteOptions read(const StudyTable& table);
+  [[nodiscard]] static const KeyTable<SilhouetteOptions>& keys();
 };
 
 /// The part of a picture that is not the background. Keeps a running mean of each pixel, to which what belongs to a

@@ -8,7 +8,7 @@
 namespace veridyn::cueing {
 namespace {
 
-/// How fast a deviation from what is wanted dies away: twice this rate, critically damped [1/s].
+/// How fast a deviation from the command dies away: twice this rate, critically damped [1/s].
 constexpr double kBandwidth = 40.0;
 /// Pieces are no longer, so that the deviation is led back in several of them [s].
 constexpr double kLongestPiece = 0.005;

@@ -6,7 +6,7 @@
 
 namespace veridyn::cueing {
 
-/// Leads one axis after the positions that are wanted and never past its limits. The axis moves on pieces of constant
+/// Leads one axis after commanded positions and never past its limits. The axis moves on pieces of constant
 /// jerk. Of every piece it is made sure, before it begins, that the fastest stop from its end stays within position and
 /// rate: so there is always a way to stay within the limits, and the nearer one the earlier the axis brakes. Wanted
 /// positions that the limits allow are followed without delay; a step that they do not allow is overshot once by an
@@ -35,7 +35,7 @@ class AxisGuard {
   [[nodiscard]] const AxisState& state() const { return state_; }
   [[nodiscard]] const AxisLimits& limits() const { return limits_; }  ///< in force
   /// Whether a limit held the last step back (of position, rate, acceleration or jerk, or the way that it takes to
-  /// stop), and the axis is off what is wanted by more than a thousandth of its range.
+  /// stop), and the axis is off the command by more than a thousandth of its range.
   [[nodiscard]] bool limited() const;
 
   static constexpr double kLongestStep = 0.1;  ///< [s]

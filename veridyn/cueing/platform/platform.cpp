@@ -7,10 +7,13 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/cueing/platform/platform_file.hpp"
 
 namespace veridyn::cueing {
 namespace {
+
+constexpr double kMostDelay = 0.5;  // [s]
 
 StaticReach in_degrees(std::vector<double> commanded, std::vector<double> reached) {
   for (double& v : commanded) v *= kDegree;
@@ -61,12 +64,42 @@ Platform ideal() {
   return p;
 }
 
-std::vector<Eigen::Vector3d> places(const StudyTable& table, std::string_view key) {
-  const std::vector<double> values = table.numbers(key, "m");
-  if (values.size() % 3 != 0) table.fail(key, fmt::format("has {} numbers; takes three a leg", values.size()));
-  std::vector<Eigen::Vector3d> all;
-  for (std::size_t i = 0; i + 2 < values.size(); i += 3) all.emplace_back(values[i], values[i + 1], values[i + 2]);
-  return all;
+/// A list of places, three numbers each.
+auto places(std::vector<Eigen::Vector3d> LegGeometry::*field) {
+  return [field](const StudyTable& t, const std::string& key, LegGeometry& legs) {
+    const std::vector<double> values = t.numbers(key, "m");
+    if (values.size() % 3 != 0) t.fail(key, fmt::format("has {} numbers; takes three a leg", values.size()));
+    (legs.*field).clear();
+    for (std::size_t i = 0; i + 2 < values.size(); i += 3)
+      (legs.*field).emplace_back(values[i], values[i + 1], values[i + 2]);
+  };
+}
+
+const KeyTable<LegGeometry>& leg_keys() {
+  using G = LegGeometry;
+  static const char* const kOfSubject = "of a subject its own";
+  static const auto limit = [](double AxisLimits::*of) { return [of](G& g) -> double& { return g.leg.*of; }; };
+  static const auto table =
+      KeyTable<G>("platform")
+          .other({"feet", "m", "numbers in threes", kOfSubject,
+                  "lower ends of the legs: forward, right, down of the centre of rotation at neutral", true},
+                 places(&G::feet))
+          .other({"heads", "m", "numbers in threes", kOfSubject, "upper ends, from that centre", true},
+                 places(&G::heads))
+          .other({"leg_stroke", "m", "[shortest, longest]", kOfSubject, "lengths against neutral", true},
+                 [](const StudyTable& t, const std::string& key, G& g) {
+                   const std::vector<double> range = internal::numbers_in(t, key, "m", kAnyNumber, 2);
+                   g.leg.lowest = range[0];
+                   g.leg.highest = range[1];
+                 })
+          .number("leg_rate", limit(&AxisLimits::rate), "m/s", kPositive, "largest of a leg")
+          .number("leg_acceleration", limit(&AxisLimits::acceleration), "m/s^2", kPositive, "largest of a leg")
+          .number("leg_jerk", limit(&AxisLimits::jerk), "m/s^3", kPositive, "largest of a leg")
+          .otherwise("what reaches the acceleration in 40 ms")
+          .check([](const StudyTable& t, G& g) {
+            if (!t.has("leg_jerk")) g.leg.jerk = 25.0 * g.leg.acceleration;
+          });
+  return table;
 }
 
 void read_legs(const StudyTable& table, Platform& p) {
@@ -76,43 +109,57 @@ void read_legs(const StudyTable& table, Platform& p) {
   }
   if (table.has("legs")) table.fail("legs", "is none or not given; `feet` and `heads` say where legs are");
   if (table.has("feet") && !p.legs) p.legs = LegGeometry{};
-  if (!p.legs) return;
-  if (table.has("feet")) p.legs->feet = places(table, "feet");
-  if (table.has("heads")) p.legs->heads = places(table, "heads");
-  if (table.has("leg_stroke")) {
-    const std::vector<double> range = table.numbers("leg_stroke", "m");
-    if (range.size() != 2) table.fail("leg_stroke", "takes the shortest and the longest length against neutral");
-    p.legs->leg.lowest = range[0];
-    p.legs->leg.highest = range[1];
-  }
-  p.legs->leg.rate = table.positive_or("leg_rate", "m/s", p.legs->leg.rate);
-  p.legs->leg.acceleration = table.positive_or("leg_acceleration", "m/s^2", p.legs->leg.acceleration);
-  p.legs->leg.jerk = table.positive_or("leg_jerk", "m/s^3", 25.0 * p.legs->leg.acceleration);
+  if (p.legs) leg_keys().read(table, *p.legs);
 }
 
-void read_reach(const StudyTable& table, PlatformAxis axis, StaticReach& reach) {
-  const std::string commanded = fmt::format("{}_commanded", name_of(axis)),
-                    reached = fmt::format("{}_reached", name_of(axis));
-  if (!table.has(commanded) && !table.has(reached)) return;
-  const char* unit = turns(axis) ? "rad" : "m";
-  reach = {table.numbers(commanded, unit), table.numbers(reached, unit)};
-  if (reach.commanded.size() < 2 || reach.commanded.size() != reach.reached.size())
-    table.fail(reached, fmt::format("has {} values for {} commands; takes as many, two at least", reach.reached.size(),
-                                    reach.commanded.size()));
-  if (!std::is_sorted(reach.commanded.begin(), reach.commanded.end(), std::less_equal<>()))
-    table.fail(commanded, "must grow from each value to the next");
+/// Of an axis, or of both kinds where the unit is empty.
+KeyTable<StaticReach> reach_keys(const std::string& axis, const std::string& unit) {
+  const std::string commanded = axis + "_commanded", reached = axis + "_reached",
+                    shown = unit.empty() ? "m or rad" : unit;
+  return KeyTable<StaticReach>("platform")
+      .numbers(commanded, &StaticReach::commanded, shown, kAnyNumber, "commands, growing, two at least")
+      .otherwise("none")
+      .numbers(reached, &StaticReach::reached, shown, kAnyNumber, "where the axis comes to rest at each")
+      .otherwise("it comes to rest where it is commanded")
+      .check([=](const StudyTable& t, StaticReach& reach) {
+        if (!t.has(commanded) && !t.has(reached)) return;
+        if (reach.commanded.size() < 2 || reach.commanded.size() != reach.reached.size())
+          t.fail(reached, fmt::format("has {} values for {} commands; takes as many, two at least",
+                                      reach.reached.size(), reach.commanded.size()));
+        if (!std::is_sorted(reach.commanded.begin(), reach.commanded.end(), std::less_equal<>()))
+          t.fail(commanded, "must grow from each value to the next");
+      });
 }
 
-void read_response(const StudyTable& table, const std::string& before, ActuatorOptions& a) {
-  a.omega = table.number_or(before + "omega", "rad/s", a.omega);
-  a.zeta = table.positive_or(before + "zeta", "1", a.zeta);
-  a.delay = table.number_or(before + "delay", "s", a.delay);
+/// Of all actuators, or with `axis` before them of an axis.
+KeyTable<ActuatorOptions> response_keys(const std::string& axis) {
+  using A = ActuatorOptions;
+  return KeyTable<A>("platform")
+      .number(axis + "omega", &A::omega, "rad/s", kNotNegative,
+              "natural frequency with which commands are followed; 0: at once")
+      .number(axis + "zeta", &A::zeta, "1", kPositive, "damping ratio")
+      .number(axis + "delay", &A::delay, "s", {.low = 0.0, .high = kMostDelay, .with_high = false},
+              "before the actuators begin to follow");
+}
+
+/// Keys that are not by axis.
+const KeyTable<Platform>& own_keys() {
+  static const auto table =
+      KeyTable<Platform>("platform", "A platform built in, of a file or of its own numbers;")
+          .elsewhere({"subject", "", "`three_axis`, `three_axis_measured`, `hexapod`, `ideal`", "none",
+                      "a built-in one", true})
+          .elsewhere({"file", "", "a file", "none", "or one that `veridyn rig test` has measured", true})
+          .text("name", &Platform::name, "for reports")
+          .otherwise("the subject's")
+          .numbers("rider", &Platform::rider, "m", kAnyNumber,
+                   "the rider's head from the centre of rotation: forward, right, down")
+          .elsewhere({"legs", "", "`none`", "the subject's", "each axis has an actuator of its own", true});
+  return table;
 }
 
 void validate_response(const std::string& before, const ActuatorOptions& a) {
   if (!(a.omega >= 0.0) || !std::isfinite(a.omega))
     throw InputError(before + "omega", fmt::format("is {}; must be above 0", a.omega));
-  constexpr double kMostDelay = 0.5;
   if (!(a.delay >= 0.0 && a.delay < kMostDelay))
     throw InputError(before + "delay", fmt::format("is {} s; takes 0 to {} s", a.delay, kMostDelay));
   if (a.omega == 0.0 && a.delay > 0.0)
@@ -144,24 +191,39 @@ Platform Platform::read(const StudyTable& table) {
     for (const Platform& known : built_in_platforms()) names.push_back(known.name);
     p = built_in_platform(table.choice_or("subject", names, ""));
   }
-  p.name = table.text_or("name", p.name);
+  own_keys().read(table, p);
   p.limits.read_over(table);
   read_legs(table, p);
-  read_response(table, "", p.actuators);
+  response_keys("").read(table, p.actuators);
   for (const PlatformAxis axis : kAllPlatformAxes) {
-    const std::string before = fmt::format("{}_", name_of(axis));
+    const std::string name(name_of(axis)), before = name + "_";
     const bool own = table.has(before + "omega") || table.has(before + "zeta") || table.has(before + "delay");
     if (own && !p.axis_actuators[axis]) p.axis_actuators[axis] = p.actuators;
-    if (own) read_response(table, before, *p.axis_actuators[axis]);
-  }
-  for (const PlatformAxis axis : kAllPlatformAxes) read_reach(table, axis, p.reach[axis]);
-  if (table.has("rider")) {
-    const std::vector<double> place = table.numbers("rider", "m");
-    if (place.size() != 3) table.fail("rider", "takes three numbers: forward, right, down");
-    p.rider = {place[0], place[1], place[2]};
+    if (own) response_keys(before).read(table, *p.axis_actuators[axis]);
+    reach_keys(name, turns(axis) ? "rad" : "m").read(table, p.reach[axis]);
   }
   p.validate();
   return p;
+}
+
+StudyKeys Platform::study_keys() {
+  StudyKeys all = own_keys().described().front();
+  const auto add = [&](const auto& table) {
+    const std::vector<StudyKey> more = table.described().front().keys;
+    all.keys.insert(all.keys.end(), more.begin(), more.end());
+  };
+  add(axis_keys("AXIS"));
+  add(response_keys(""));
+  const std::size_t of_all = all.keys.size();
+  add(response_keys("AXIS_"));
+  for (std::size_t i = of_all; i < all.keys.size(); ++i) {
+    all.keys[i].otherwise = "that of all";
+    all.keys[i].in_words = true;
+  }
+  add(reach_keys("AXIS", ""));
+  add(leg_keys());
+  all.about += " `AXIS`: `surge`, `sway`, `heave`, `roll`, `pitch`, `yaw`.";
+  return all;
 }
 
 void Platform::validate() const {

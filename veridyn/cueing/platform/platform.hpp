@@ -9,14 +9,14 @@
 
 namespace veridyn::cueing {
 
-/// How an actuator follows what it is told: second order, behind a delay.
+/// How an actuator follows its command: second order, behind a delay.
 struct ActuatorOptions {
   double omega = 30.0;  ///< natural frequency [rad/s]; 0: it follows at once
   double zeta = 1.0;    ///< damping ratio
   double delay = 0.01;  ///< [s]
 };
 
-/// Where an axis comes to rest when it is told to go somewhere: points of lines, in order; beyond them at the end's.
+/// Where an axis comes to rest by what is commanded: points of lines, in order; beyond them at the end's.
 struct StaticReach {
   std::vector<double> commanded, reached;  ///< [m or rad]
 
@@ -37,17 +37,15 @@ struct Platform {
   /// Of axes that were measured one by one; an axis without follows as `actuators`. With legs these hold for the axes,
   /// and the legs follow them at once.
   PerPlatformAxis<std::optional<ActuatorOptions>> axis_actuators = {};
-  PerPlatformAxis<StaticReach> reach = {};  ///< empty: it comes to rest where it is told to
+  PerPlatformAxis<StaticReach> reach = {};  ///< empty: it comes to rest where it is commanded
   Eigen::Vector3d rider = {0.0, 0.0,
                            -0.8};  ///< the driver's head from the centre of rotation: forward, right, down [m]
 
-  /// Reads `[platform]`: `subject` names a built-in one, whose values other keys replace; limits as
-  /// `PlatformLimits::read`; `legs` = "none"; `leg_stroke` = [shortest, longest] against neutral, `leg_rate`,
-  /// `leg_acceleration`, `feet` and `heads` (numbers in threes: forward, right, down); `omega`, `zeta`, `delay` of the
-  /// actuators, and `NAME_omega`, `NAME_zeta`, `NAME_delay` of an axis; `NAME_commanded` and `NAME_reached`; `rider`;
-  /// `name`. `file` names another file's `[platform]`, as `veridyn rig test` writes it, in place of `subject`.
+  /// Reads `[platform]`: a built-in one or a file's (`veridyn rig test` writes them), whose values other keys replace.
   /// @throws InputError with file, line and key.
   [[nodiscard]] static Platform read(const StudyTable& table);
+  /// All keys of `[platform]`.
+  [[nodiscard]] static StudyKeys study_keys();
   /// @throws InputError naming what cannot be: limits, legs that do not reach, a delay of half a second or more.
   void validate() const;
   /// How an axis follows.
@@ -57,8 +55,8 @@ struct Platform {
 };
 
 /// "three_axis": roll, pitch and heave on three upright actuators. "three_axis_measured": the same with the resting
-/// places that were measured of such a platform, which reaches less than it is told at large angles. "hexapod": six
-/// axes on six legs. "ideal": six axes, 10 m and 60 deg each way, at once where they are told to be: what an algorithm
+/// places that were measured of such a platform, which reaches less than is commanded at large angles. "hexapod": six
+/// axes on six legs. "ideal": six axes, 10 m and 60 deg each way, at once where they are commanded: what an algorithm
 /// does by itself. @throws InputError with the nearest name.
 [[nodiscard]] const Platform& built_in_platform(std::string_view name);
 /// All of them.

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::cueing {
 namespace {
@@ -15,32 +15,6 @@ constexpr PerPlatformAxis<std::string_view> kNames = {"surge", "sway", "heave", 
 
 /// Jerk over acceleration where nothing else is known [1/s].
 constexpr double kUsualJerk = 20.0;
-
-void read_axis(const StudyTable& table, PlatformAxis axis, AxisLimits& limits) {
-  const std::string name(name_of(axis)), unit = turns(axis) ? "rad" : "m";
-  const bool known = limits.moves();
-  if (table.has(name)) {
-    const std::vector<double> range = table.numbers(name, unit);
-    if (range.size() != 2) table.fail(name, fmt::format("has {} values; takes lowest and highest", range.size()));
-    limits.lowest = range[0];
-    limits.highest = range[1];
-    if (!(limits.lowest <= 0.0 && limits.highest >= 0.0 && limits.highest > limits.lowest))
-      table.fail(name, fmt::format("goes from {:g} to {:g} {}; the neutral position, 0, has to lie between", range[0],
-                                   range[1], unit));
-  }
-  if (!limits.moves()) return;
-  const auto limit = [&](const char* what, const char* per, std::optional<double> otherwise) {
-    const std::string key = fmt::format("{}_{}", name, what);
-    const double value = otherwise ? table.number_or(key, unit + per, *otherwise) : table.number(key, unit + per);
-    if (!(value > 0.0)) table.fail(key, fmt::format("is {}; must be above 0", value));
-    return value;
-  };
-  const auto otherwise = [known](double value) { return known ? std::optional(value) : std::nullopt; };
-  const bool other = !known || table.has(name + "_acceleration");
-  limits.rate = limit("rate", "/s", otherwise(limits.rate));
-  limits.acceleration = limit("acceleration", "/s^2", otherwise(limits.acceleration));
-  limits.jerk = limit("jerk", "/s^3", other ? kUsualJerk * limits.acceleration : limits.jerk);
-}
 
 AxisLimits symmetric(double position, double rate, double acceleration) {
   return {.lowest = -position,
@@ -54,14 +28,46 @@ AxisLimits symmetric(double position, double rate, double acceleration) {
 
 std::string_view name_of(PlatformAxis axis) { return kNames[axis]; }
 
-PlatformLimits PlatformLimits::read(const StudyTable& table) {
-  PlatformLimits limits;
-  limits.read_over(table);
-  return limits;
+KeyTable<AxisLimits> axis_keys(const std::string& name, const std::string& unit) {
+  using L = AxisLimits;
+  const auto per = [&](const char* time) { return unit.empty() ? fmt::format("m{0} or rad{0}", time) : unit + time; };
+  const std::string rate = name + "_rate", acceleration = name + "_acceleration", jerk = name + "_jerk";
+  return KeyTable<L>("platform")
+      .other({name, per(""), "[lowest, highest], 0 between", "it cannot move", "positions against neutral", true},
+             [unit](const StudyTable& t, const std::string& key, L& l) {
+               const std::vector<double> range = internal::numbers_in(t, key, unit, kAnyNumber, 2);
+               l.lowest = range[0];
+               l.highest = range[1];
+               if (!(l.lowest <= 0.0 && l.highest >= 0.0 && l.moves()))
+                 t.fail(key, fmt::format("goes from {:g} to {:g} {}; the neutral position, 0, has to lie between",
+                                         range[0], range[1], unit));
+             })
+      .number(rate, &L::rate, per("/s"), kPositive, "largest, either way")
+      .otherwise("required of an axis that moves")
+      .number(acceleration, &L::acceleration, per("/s^2"), kPositive, "largest, either way")
+      .otherwise("required of an axis that moves")
+      .number(jerk, &L::jerk, per("/s^3"), kPositive, "largest, either way")
+      .otherwise("what reaches the acceleration in 50 ms")
+      .check([=](const StudyTable& t, L& l) {
+        std::vector<std::string> missing;
+        for (const auto& [key, value] : {std::pair{rate, l.rate}, std::pair{acceleration, l.acceleration}}) {
+          if (!l.moves() && t.has(key)) t.fail(key, fmt::format("is of an axis that cannot move: {} is missing", name));
+          if (l.moves() && value == 0.0) missing.push_back(key);
+        }
+        if (!missing.empty())
+          t.fail(missing.front(),
+                 missing.size() == 1 ? "is missing" : fmt::format("is missing, and so is {}", missing.back()));
+        if (!t.has(jerk) && (t.has(acceleration) || l.jerk == 0.0)) l.jerk = kUsualJerk * l.acceleration;
+      });
 }
 
 void PlatformLimits::read_over(const StudyTable& table) {
-  for (const PlatformAxis axis : kAllPlatformAxes) read_axis(table, axis, axes[axis]);
+  for (const PlatformAxis axis : kAllPlatformAxes) {
+    constexpr AxisLimits kNotKnown{.rate = 0.0, .acceleration = 0.0, .jerk = 0.0};
+    AxisLimits limits = axes[axis].moves() ? axes[axis] : kNotKnown;
+    axis_keys(std::string(name_of(axis)), turns(axis) ? "rad" : "m").read(table, limits);
+    if (limits.moves()) axes[axis] = limits;
+  }
   validate();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -38,11 +39,8 @@ struct AxisLimits {
 struct PlatformLimits {
   PerPlatformAxis<AxisLimits> axes = {};
 
-  /// Reads `[platform]`: `roll`, `pitch`, `heave`, ... = [lowest, highest]; `NAME_rate` and `NAME_acceleration`
-  /// of each; `NAME_jerk` (what reaches the acceleration in 50 ms where it is not given). An axis that is not named
-  /// cannot move. @throws InputError with file, line and key.
-  [[nodiscard]] static PlatformLimits read(const StudyTable& table);
-  /// The same over what is there already.
+  /// Reads what `[platform]` says of the axes over what is there already; an axis that neither has cannot move.
+  /// @throws InputError with file, line and key.
   void read_over(const StudyTable& table);
   /// @throws InputError where a range does not hold zero, a limit is not above zero, or no axis moves.
   void validate() const;
@@ -53,6 +51,9 @@ struct PlatformLimits {
   [[nodiscard]] const AxisLimits& operator[](PlatformAxis axis) const { return axes[axis]; }
   [[nodiscard]] AxisLimits& operator[](PlatformAxis axis) { return axes[axis]; }
 };
+
+/// The keys of an axis; without a unit of any, to be shown.
+[[nodiscard]] KeyTable<AxisLimits> axis_keys(const std::string& name, const std::string& unit = {});
 
 /// Three axes, one above the other: roll +-20 deg, pitch +20/-15 deg, heave +-100 mm, 30 deg/s and 0.3 m/s,
 /// 200 deg/s^2 and 3 m/s^2. Positions are those that the source of the reproduced experiments gives, the others are

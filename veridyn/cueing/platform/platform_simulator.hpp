@@ -24,7 +24,7 @@ class DelayLine {
   std::size_t newest_ = 0, count_ = 0;
 };
 
-/// A platform that does what it is told as a real one does: each leg, or each axis of a platform without legs, is led
+/// A platform that follows commands as a real one does: each leg, or each axis of a platform without legs, is led
 /// within its own stroke, rate and acceleration (`AxisGuard`), follows as a second-order system behind a delay, and
 /// comes to rest where the platform was measured to. Nothing is allocated or thrown after construction; a copy saves
 /// the state.

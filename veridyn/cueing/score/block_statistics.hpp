@@ -12,7 +12,7 @@ struct Measured {
   double value = 0.0, low = 0.0, high = 0.0;
 };
 
-/// How like two signals are, from sums over blocks of the drive, so that the blocks may be drawn again: x(t - lag)
+/// How like two signals are, from sums over blocks of the drive, so that the blocks may be resampled: x(t - lag)
 /// against y(t) on an even grid. Neighbouring samples depend on each other; blocks of many seconds hardly do.
 class BlockStatistics {
  public:
@@ -51,7 +51,7 @@ class BlockStatistics {
   std::vector<double> squares_, above_, samples_;
 };
 
-/// Figures of blocks drawn again and again, with replacement (Efron & Tibshirani 1993), the same draws for the same
+/// Figures of blocks resampled with replacement (Efron & Tibshirani 1993), the same draws for the same
 /// number of blocks and seed: two algorithms on one drive are compared draw by draw.
 /// @param figures puts `count` figures of a choice of blocks where it is told
 /// @return NaN ends with fewer than `BlockStatistics::kFewestBlocks` blocks

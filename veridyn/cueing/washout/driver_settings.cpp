@@ -1,25 +1,14 @@
 #include "veridyn/cueing/washout/driver_settings.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <string>
 #include <vector>
 
+#include "veridyn/core/study_keys.hpp"
+
 namespace veridyn::cueing {
 namespace {
 
-struct Setting {
-  const char* name;
-  std::optional<double> DriverSettings::*value;
-  double least, most;
-};
-
-constexpr Setting kSettings[] = {{"overall", &DriverSettings::overall, 0.0, 100.0},
-                                 {"sustained", &DriverSettings::sustained, 0.0, 2.0},
-                                 {"instant", &DriverSettings::instant, 0.0, 1.0},
-                                 {"chassis", &DriverSettings::chassis, 0.0, 20.0},
-                                 {"aggression", &DriverSettings::aggression, 0.1, 20.0}};
 constexpr double kWholeChassis = 20.0;
 
 }  // namespace
@@ -29,18 +18,27 @@ DriverSettings DriverSettings::preset(std::string_view name) {
   return {.overall = overall, .sustained = 0.45, .instant = 0.15, .chassis = 6.0, .aggression = 4.4};
 }
 
-DriverSettings DriverSettings::read(const StudyTable& table) {
-  DriverSettings s;
-  const std::vector<std::string> presets = {"low", "medium", "high"};
-  if (table.has("preset")) s = preset(table.choice_or("preset", presets, ""));
-  for (const Setting& setting : kSettings) {
-    const std::optional<double> given = table.optional_number(setting.name, "1");
-    if (!given) continue;
-    if (!(*given >= setting.least && *given <= setting.most))
-      table.fail(setting.name, fmt::format("is {:g}; takes {:g} to {:g}", *given, setting.least, setting.most));
-    s.*setting.value = given;
-  }
-  return s;
+const KeyTable<DriverSettings>& DriverSettings::keys() {
+  using S = DriverSettings;
+  static const std::vector<std::string> presets = {"low", "medium", "high"};
+  static const char* const kOwn = "each algorithm's own knobs";
+  static const auto table =
+      KeyTable<S>("cue")
+          .other({"preset", "", quoted_list(presets, "`"), "none",
+                  "overall 30, 68, 100; sustained 0.45, instant 0.15, chassis 6, aggression 4.4", true},
+                 [](const StudyTable& t, const std::string& key, S& s) { s = preset(t.choice_or(key, presets, "")); })
+          .number("overall", &S::overall, "1", from_to(0.0, 100.0), "all gains, in percent of the vehicle's motion")
+          .otherwise(kOwn)
+          .number("sustained", &S::sustained, "1", from_to(0.0, 2.0), "share of lasting forces: `sustained`")
+          .otherwise(kOwn)
+          .number("instant", &S::instant, "1", from_to(0.0, 1.0), "share of their beginnings: `instant`")
+          .otherwise(kOwn)
+          .number("chassis", &S::chassis, "1", from_to(0.0, kWholeChassis),
+                  "`rate_gain` of roll and pitch, 20 being the vehicle's own times `overall`")
+          .otherwise(kOwn)
+          .number("aggression", &S::aggression, "1", from_to(0.1, 20.0), "`tilt` [rad/s]: how fast filters follow")
+          .otherwise(kOwn);
+  return table;
 }
 
 void DriverSettings::apply(WashoutDesign& design) const {

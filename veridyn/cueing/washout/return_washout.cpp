@@ -7,7 +7,7 @@ std::vector<Knob> ReturnDesign::knobs() {
       {"onset", "rad/s", {&onset, 1}, "shorter pushes, and less travel", false, 0.3, 6.0},
       {"threshold", "m/s^2", {&threshold, 1}, "the platform returns to its rest position more often", false, 0.05, 0.5},
       {"home", "rad/s", {&home, 1}, "a platform that comes home sooner", false, 0.5, 5.0},
-      {"home_force", "m/s^2", {&home_force, 1}, "a faster way home; above 0.17 it is felt"}};
+      {"home_force", "m/s^2", {&home_force, 1}, "a faster return to neutral; above 0.17 it is felt"}};
   shared.add_to(all);
   return all;
 }

@@ -11,7 +11,7 @@ class ReturnDesign final : public WashoutDesign {
   double onset = 1.0;        ///< high-pass of surge and sway, second order [rad/s]
   double threshold = 0.17;   ///< a force below this brings the platform home [m/s^2]
   double home = 2.0;         ///< how fast it comes home: critically damped [rad/s]
-  double home_force = 0.15;  ///< greatest acceleration on the way home, below what is felt [m/s^2]
+  double home_force = 0.15;  ///< greatest acceleration on the way back to neutral, below what is felt [m/s^2]
 
   [[nodiscard]] std::vector<Knob> knobs() override;
   [[nodiscard]] std::unique_ptr<Washout> make(const Platform& platform) const override;

@@ -32,7 +32,7 @@ class ShoaraiWashout {
   /// @throws InputError for frequencies or a step of zero or below.
   explicit ShoaraiWashout(const ShoaraiSettings& settings);
 
-  /// Where the platform is told to be.
+  /// Commanded pose of the platform.
   struct Pose {
     Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< [m]
     Eigen::Vector3d angle = Eigen::Vector3d::Zero();  ///< [rad]

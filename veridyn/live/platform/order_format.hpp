@@ -35,7 +35,7 @@ struct OrderFormatOptions {
 
 /// Writes orders in one of these formats. Nothing is allocated or thrown after construction.
 ///
-/// - motion_68: time, attitude and place are those of the platform: yaw, pitch and roll the angles it is told, place
+/// - motion_68: time, attitude and place are those of the platform: yaw, pitch and roll the commanded angles, place
 ///   its shift; everything else is zero. The packet was made for a vehicle's motion; that a platform's program takes
 ///   it for positions is an assumption that was not tried on one.
 /// - amc_aasd15a: ff ff, six u16 (high byte first; 0: the leg at its shortest, 65535: at its longest), four zeros,

@@ -147,7 +147,7 @@ PlatformResponse fit_response(const ToldAndReached& m) {
     p.notes.push_back(fmt::format(
         "{:.0f} % of the motion is not explained: friction, play, or an order that was held back", 100.0 * p.rms));
   if (std::abs(p.gain.value - 1.0) > 0.05)
-    p.notes.push_back(fmt::format("it reaches {:.0f} % of what it is told", 100.0 * p.gain.value));
+    p.notes.push_back(fmt::format("it reaches {:.0f} % of what is commanded", 100.0 * p.gain.value));
   return p;
 }
 

@@ -6,7 +6,7 @@
 
 namespace veridyn::live {
 
-/// What a platform is told by hand, one axis at a time.
+/// Commands to a platform by hand, one axis at a time.
 enum class TestSignal {
   kHome,   ///< neutral
   kZero,   ///< the same: the zero of every command
@@ -34,7 +34,7 @@ struct TestSignalOptions {
   double duration = 60.0;        ///< of the sweep [s]
 };
 
-/// Position that is wanted at a time [m or rad]. Sines, of wave and sweep, are as large as range, rate and acceleration
+/// Commanded position at a time [m or rad]. Sines, of wave and sweep, are as large as range, rate and acceleration
 /// of the axis allow at their frequency, times `size`, so that a guard has nothing to hold back. They begin and end at
 /// rest within a second.
 [[nodiscard]] double wanted_position(const TestSignalOptions& options, const cueing::AxisLimits& limits, double time);

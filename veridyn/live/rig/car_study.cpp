@@ -5,61 +5,69 @@
 #include <array>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/live/driver/driver_table.hpp"
 #include "veridyn/live/rig/live_study.hpp"
 
 namespace veridyn::live {
-namespace {
 
-/// A number within a range, with its unit in the message.
-double car_number(const StudyTable& table, std::string_view key, std::string_view unit, double otherwise, double lowest,
-                  double highest) {
-  const double value = table.number_or(key, unit, otherwise);
-  if (!(value >= lowest && value <= highest))
-    table.fail(key, fmt::format("is {:g} {}; takes {:g} to {:g} {}", value, unit, lowest, highest, unit));
-  return value;
+const KeyTable<CarStudy>& CarStudy::keys() {
+  using C = CarStudy;
+  const auto steering = [](C& c) -> double& { return c.range.steering; };
+  const auto force = [](C& c) -> double& { return c.range.drive_force; };
+  static const auto table =
+      KeyTable<C>("live.car", "A scaled car at the end of a serial line.")
+          .file("line", &C::line, "the serial device; of `veridyn rig car` the name of its pseudo-terminal")
+          .otherwise("`/tmp/car`")
+          .count("baud", &C::baud, 1200, 12'000'000, "of the line [bit/s]")
+          .number("steering", steering, "rad", from_to(0.01, 1.5), "largest angle of the road wheels")
+          .number("force", force, "N", from_to(0.1, 1600.0), "largest drive force, of all wheels together")
+          .number("brake", &C::brake, "N m", from_to(1e-3, 1e4), "torque of the brake fully on, of all wheels together")
+          .number("radius", &C::radius, "m", from_to(0.005, 1.0), "of the wheels: from their speed to the car's")
+          .numbers("sensor", &C::sensor, "m", kAnyNumber,
+                   "of the inertial sensors from the centre of gravity: forward, left, up")
+          .number("report_rate", &C::report_rate, "Hz", from_to(20.0, 400.0), "of the car's reports")
+          .number("flips", &C::flips, "1", from_to(0.0, 0.5),
+                  "of the virtual car: share of the line's bytes that arrive as other ones")
+          .other({"truth", "", "an address", "none", "of the virtual car: where its true motion is sent", true},
+                 [](const StudyTable& t, const std::string& key, C& c) {
+                   c.truth = parse_address(t.text(key), t.place(key));
+                 });
+  return table;
 }
 
-}  // namespace
-
-CarStudy read_car(const StudyTable& live) {
-  const StudyTable table = live.table_or_empty("car");
-  CarStudy c;
-  if (table.has("line")) c.line = table.file("line");
-  c.baud = static_cast<int>(table.integer_or("baud", c.baud));
-  if (!(c.baud >= 1200 && c.baud <= 12'000'000))
-    table.fail("baud", fmt::format("is {}; takes 1200 to 12000000", c.baud));
-  c.range.steering = car_number(table, "steering", "rad", c.range.steering, 0.01, 1.5);
-  c.range.drive_force = car_number(table, "force", "N", c.range.drive_force, 0.1, 1600.0);
-  c.brake = car_number(table, "brake", "N m", c.brake, 1e-3, 1e4);
-  c.radius = car_number(table, "radius", "m", c.radius, 0.005, 1.0);
-  if (table.has("sensor")) {
-    const std::vector<double> place = table.numbers("sensor", "m");
-    if (place.size() != 3) table.fail("sensor", "takes three numbers: forward, left, up");
-    c.sensor = {place[0], place[1], place[2]};
-  }
-  c.report_rate = car_number(table, "report_rate", "Hz", c.report_rate, 20.0, 400.0);
-  constexpr double kMostFlips = 0.5;
-  c.flips = car_number(table, "flips", "1", c.flips, 0.0, kMostFlips);
-  if (table.has("truth")) c.truth = parse_address(table.text("truth"), table.place("truth"));
-  return c;
+const KeyTable<DriverStudy>& DriverStudy::keys() {
+  using D = DriverStudy;
+  const auto driven_by = [](D::Kind by) {
+    return [by](const StudyTable& t, const std::string& key, D& d) {
+      d.kind = by;
+      d.file = t.file(key);
+    };
+  };
+  const auto ratio = [](D& d) -> double& { return d.command.steering_ratio; };
+  const auto reverse = [](D& d) -> double& { return d.command.reverse_share; };
+  static const auto table =
+      KeyTable<D>("live.driver", "Who drives the car: one of `wheel`, `events`, `table`.")
+          .other({"wheel", "", "a device", "", "`/dev/input/by-id/...-event-joystick`"}, driven_by(D::Kind::kWheel))
+          .other({"events", "", "a file", "", "recorded of such a device"}, driven_by(D::Kind::kEvents))
+          .other({"table", "", "a file", "", "what a driver does over time"}, driven_by(D::Kind::kTable))
+          .elsewhere({"calibration", "", "a file", "required with `wheel` and `events`",
+                      "that `veridyn rig wheel` writes for this wheel; or its tables, "
+                      "`[live.driver.calibration.steering]` ...",
+                      true})
+          .number("ratio", ratio, "1", from_to(0.1, 100.0), "angle of the steering wheel over that of the road wheels")
+          .number("reverse_share", reverse, "1", from_to(0.0, 1.0), "of the drive force, backward")
+          .check([](const StudyTable& t, D&) {
+            const int named = int{t.has("wheel")} + int{t.has("events")} + int{t.has("table")};
+            if (named != 1) t.fail("", fmt::format("names {} of wheel, events and table; takes one", named));
+          });
+  return table;
 }
 
 DriverStudy read_driver(const StudyTable& live, const CommandRange& range) {
   if (!live.has("driver")) live.fail("driver", "is missing: [live.driver] says who drives the car");
   const StudyTable table = live.table("driver");
-  DriverStudy d;
-  constexpr std::array<std::pair<const char*, DriverStudy::Kind>, 3> kKinds = {{{"wheel", DriverStudy::Kind::kWheel},
-                                                                                {"events", DriverStudy::Kind::kEvents},
-                                                                                {"table", DriverStudy::Kind::kTable}}};
-  int named = 0;
-  for (const auto& [key, kind] : kKinds) {
-    if (!table.has(key)) continue;
-    ++named;
-    d.kind = kind;
-    d.file = table.file(key);
-  }
-  if (named != 1) live.fail("driver", fmt::format("names {} of wheel, events and table; takes one", named));
+  DriverStudy d = DriverStudy::keys().read(table);
   if (d.kind == DriverStudy::Kind::kTable) {
     d.calibration = table_calibration();
     if (table.has("calibration")) table.fail("calibration", "is for a wheel; a table says what its driver does");
@@ -72,8 +80,6 @@ DriverStudy read_driver(const StudyTable& live, const CommandRange& range) {
     d.calibration_by_file = true;
   }
   d.command.range = range;
-  d.command.steering_ratio = car_number(table, "ratio", "1", d.command.steering_ratio, 0.1, 100.0);
-  d.command.reverse_share = car_number(table, "reverse_share", "1", d.command.reverse_share, 0.0, 1.0);
   return d;
 }
 

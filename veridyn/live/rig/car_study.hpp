@@ -11,18 +11,7 @@
 
 namespace veridyn::live {
 
-/// A scaled car at the end of a serial line, from `[live.car]`:
-///
-///     line = "/tmp/car"         # the serial device; for `veridyn rig car`, what its pseudo-terminal is called
-///     baud = 250000
-///     steering = "0.6 rad"      # largest angle of the road wheels
-///     force = "100 N"           # largest drive force, of all wheels together
-///     brake = "3 N m"           # torque of the brake fully on, of all wheels together
-///     radius = "6 cm"           # of the wheels: from their speed to the car's
-///     sensor = [0, 0, 0]        # of the inertial sensors from the centre of gravity, forward, left, up [m]
-///     report_rate = "100 Hz"    # 20 to 400 Hz
-///     flips = 0.01              # of the virtual car: share of the line's bytes that arrive as other ones
-///     truth = "127.0.0.1:4130"  # of the virtual car: where its true motion is sent, packets `veridyn`
+/// A scaled car at the end of a serial line, from `[live.car]`.
 struct CarStudy {
   std::filesystem::path line = "/tmp/car";
   int baud = 250'000;
@@ -32,17 +21,12 @@ struct CarStudy {
   Eigen::Vector3d sensor = Eigen::Vector3d::Zero();
   double report_rate = 100.0;  ///< [Hz]
   double flips = 0.0;
-  std::optional<Sender> truth;
+  std::optional<Sender> truth;  ///< where the virtual car's motion is sent
+
+  [[nodiscard]] static const KeyTable<CarStudy>& keys();
 };
 
-/// Who drives it, from `[live.driver]`:
-///
-///     wheel = "/dev/input/by-id/...-event-joystick"   # one of these three
-///     events = "drive.events"         # recorded of such a device
-///     table = "drive.csv"             # see read_driver_table
-///     calibration = "wheel.toml"      # of `veridyn rig wheel`; or its tables, [live.driver.calibration.steering] ...
-///     ratio = 13.1                    # angle of the steering wheel by that of the road wheels
-///     reverse_share = 0.5             # of the drive force, backward
+/// Who drives it, from `[live.driver]`.
 struct DriverStudy {
   enum class Kind { kWheel, kEvents, kTable };
   Kind kind = Kind::kTable;
@@ -50,10 +34,10 @@ struct DriverStudy {
   WheelCalibration calibration;
   DriverCommandOptions command;  ///< its range is the car's
   bool calibration_by_file = false;
+
+  [[nodiscard]] static const KeyTable<DriverStudy>& keys();
 };
 
-/// @param live the table that holds `[live.car]` @throws InputError with file, line and key
-[[nodiscard]] CarStudy read_car(const StudyTable& live);
 /// @param range of the car @throws InputError with file, line and key
 [[nodiscard]] DriverStudy read_driver(const StudyTable& live, const CommandRange& range);
 

@@ -16,15 +16,6 @@
 namespace veridyn::live {
 namespace {
 
-/// A number within a range, with its unit in the message.
-double number_within(const StudyTable& table, std::string_view key, std::string_view unit, double otherwise,
-                     double lowest, double highest) {
-  const double value = table.number_or(key, unit, otherwise);
-  if (!(value >= lowest && value <= highest))
-    table.fail(key, fmt::format("is {:g} {}; takes {:g} to {:g} {}", value, unit, lowest, highest, unit));
-  return value;
-}
-
 /// Layouts from which a motion can be had.
 std::vector<io::PacketLayout> read_layouts(const StudyTable& live) {
   if (live.is_table("packet")) {
@@ -85,17 +76,6 @@ Sender parse_address(std::string_view text, const std::string& place) {
   return s;
 }
 
-VirtualVehicleOptions read_virtual_vehicle(const StudyTable& live) {
-  const StudyTable table = live.table_or_empty("vehicle");
-  VirtualVehicleOptions o;
-  o.rate = number_within(table, "rate", "Hz", o.rate, 1.0, 4000.0);
-  o.jitter = number_within(table, "jitter", "s", o.jitter, 0.0, 1.0);
-  o.loss = number_within(table, "loss", "1", o.loss, 0.0, 0.99);
-  o.clock_drift = number_within(table, "clock_drift", "1", o.clock_drift, -0.01, 0.01);
-  o.seed = static_cast<std::uint64_t>(table.integer_or("seed", 1));
-  return o;
-}
-
 namespace {
 
 /// An address, or the device of a serial line.
@@ -108,25 +88,16 @@ void read_platform(const StudyTable& live, LiveStudy& s) {
     return;
   }
   s.platform_line.device = platform;
-  const long long baud = live.integer_or("baud", s.platform_line.baud);
-  if (!(baud >= 1200 && baud <= 4'000'000)) live.fail("baud", fmt::format("is {}; takes 1200 to 4000000", baud));
-  s.platform_line.baud = static_cast<int>(baud);
 }
 
 /// How orders are written, and whether they are answered.
 void read_format(const StudyTable& live, LiveStudy& s) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < kOrderFormats; ++i) names.emplace_back(name_of(static_cast<OrderFormatKind>(i)));
-  const std::string name = live.choice_or("format", names, names.front());
-  s.format.kind = static_cast<OrderFormatKind>(std::find(names.begin(), names.end(), name) - names.begin());
+  const std::string_view name = name_of(s.format.kind);
   const bool own = s.format.kind == OrderFormatKind::kVeridyn;
-  s.options.answers = live.flag_or("answers", s.options.answers);
   if (!own && s.options.answers)
     live.fail("answers", fmt::format("must be false: a platform of format '{}' does not answer orders", name));
-  if (live.has("text")) {
-    if (s.format.kind != OrderFormatKind::kFlypt) live.fail("text", fmt::format("is of 'flypt'; format is '{}'", name));
-    s.format.text = live.text("text");
-  }
+  if (live.has("text") && s.format.kind != OrderFormatKind::kFlypt)
+    live.fail("text", fmt::format("is of 'flypt'; format is '{}'", name));
   if (own && !s.platform_line.device.empty())
     live.fail("platform", "is a serial line, on which formats without answers go only; 'veridyn' takes an address");
   std::size_t longest = 0;
@@ -164,18 +135,19 @@ LiveStudy read_live_study(const Study& study) {
     root.table("cue").fail("algorithms", fmt::format("names {}; a platform follows one", s.cueing.algorithms.size()));
   s.cueing.response.reset();  // `veridyn cue` without --live measures it
   const StudyTable live = root.table("live");
-  static_cast<void>(read_virtual_vehicle(live));  // refused here too where it is wrong
+  LiveStudy::keys().read(live, s);
+  static_cast<void>(virtual_vehicle_keys().read(live.table_or_empty("vehicle")));  // refused here too where it is wrong
   if (live.has("circuit")) {
     const StudyTable table = live.table("circuit");
     s.circuit = vehicle::read_circuit(table, s.cueing.seed);
-    s.circuit_drive = read_circuit_drive(table);
+    s.circuit_drive = CircuitDriveOptions::keys().read(table);
   }
   if (live.text("telemetry") == "car") {
-    s.car = read_car(live);
+    s.car = CarStudy::keys().read(live.table_or_empty("car"));
     s.driver = read_driver(live, s.car->range);
     if (live.has("camera")) {
       const StudyTable camera = live.table("camera");
-      s.camera = CameraStudy{parse_address(camera.text("address"), camera.place("address"))};
+      s.camera = CameraStudy::keys().read(camera);
       camera.accept("fusion");  // read by whoever fuses
       camera.accept("view");    // by the virtual camera, as the next
       camera.accept("tracker");
@@ -189,26 +161,9 @@ LiveStudy read_live_study(const Study& study) {
   read_platform(live, s);
   if (s.car && !s.platform_line.device.empty())
     live.fail("platform", "is a serial line; with a car the platform takes orders at an address");
-  if (live.has("page")) s.page = parse_address(live.text("page"), live.place("page"));
-  if (live.has("page_token")) s.page_token = live.file("page_token");
-  s.page_rate = number_within(live, "page_rate", "Hz", s.page_rate, 1.0, 60.0);
   s.layouts = read_layouts(live);
-  RigOptions& o = s.options;
-  o.rate = number_within(live, "rate", "Hz", o.rate, 20.0, 4000.0);
   read_format(live, s);
-  o.even.delay = number_within(live, "delay", "s", o.even.delay, 0.0, 0.5);
-  o.even.extrapolate = number_within(live, "extrapolate", "s", o.even.extrapolate, 0.0, 0.2);
-  o.soft_start = number_within(live, "soft_start", "s", o.soft_start, 0.5, 60.0);
-  o.hold = number_within(live, "hold", "s", o.hold, 0.0, 10.0);
-  o.fade = number_within(live, "fade", "s", o.fade, 0.5, 60.0);
-  o.lost_after = number_within(live, "lost_after", "s", o.lost_after, 0.05, 5.0);
-  o.frozen_after = number_within(live, "frozen_after", "s", o.frozen_after, 0.1, 60.0);
-  o.unanswered_after = number_within(live, "unanswered_after", "s", o.unanswered_after, 0.02, 5.0);
-  o.intake.stale_after = number_within(live, "stale_after", "s", o.intake.stale_after, 0.01, 5.0);
-  o.spikes = number_within(live, "spikes", "m/s^3", o.spikes, 50.0, 1e6);
-  const std::vector<std::string> checks = {"before", "while", "off"};
-  const std::string signs = live.choice_or("signs", checks, "before");
-  o.signs = signs == "before" ? SignCheck::kBefore : signs == "while" ? SignCheck::kWhile : SignCheck::kOff;
+  RigOptions& o = s.options;
   o.sensor = s.car ? s.car->sensor : s.cueing.motion.place;
   o.driver = s.cueing.driver;
   if (s.cueing.motion.gravity != recording::GravityIn::kDecide) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/cueing/cueing_study.hpp"
 #include "veridyn/live/link/datagram.hpp"
 #include "veridyn/live/platform/order_format.hpp"
@@ -46,38 +47,15 @@ struct RigOptions {
   Eigen::Vector3d driver = Eigen::Vector3d::Zero();  ///< the driver's head [m]
 };
 
-/// A camera above the track, from `[live.camera]`:
-///
-///     address = "127.0.0.1:6123"   # of `veridyn camera track --serve`
-///     [live.camera.fusion]         # with the car's inertial sensors, see camera::FusionOptions::read
+/// A camera above the track, from `[live.camera]`; `[live.camera.fusion]` is read by `camera::FusionOptions`.
 struct CameraStudy {
   Sender address;
+
+  [[nodiscard]] static const KeyTable<CameraStudy>& keys();
 };
 
-/// A study of `veridyn cue --live`: platform, algorithm and rider as `veridyn cue` has them, and where motion comes
-/// from and goes to.
-///
-///     [live]
-///     telemetry = "127.0.0.1:4123"  # listens here for packets; 0.0.0.0: at all of the machine's addresses
-///                                   # or "car": reports of the car of [live.car], driven by [live.driver]
-///     stop = "127.0.0.1:4123"       # with a car: where datagrams VSTOP1 are listened to; nowhere when left out
-///     packet = "outsim"             # see io::known_packets; "any" (when left out) recognises them by content
-///     [live.packet]                 # or a layout of one's own, see io::read_packet_layout
-///     platform = "127.0.0.1:5123"   # orders go there
-///     format = "veridyn"            # how orders are written, see OrderFormatKind; text = "P={pitch:deg:.3f}" of flypt
-///     baud = 250000                 # where platform is a serial line: "/dev/ttyUSB0"
-///     answers = true                # whether the platform answers them; formats of others have no answers
-///     rate = "100 Hz"               # of orders, 20 Hz to 4 kHz
-///     delay = "20 ms"               # of the motion, for packets that come late
-///     extrapolate = "30 ms"         # how far it goes on where they come later still
-///     spikes = "500 m/s^3"          # most change of a specific force, against crashes and landings
-///     soft_start = 3                # [s], as hold = 0.5, fade = 3
-///     lost_after = 0.25             # [s], as frozen_after = 1, stale_after = 0.25, unanswered_after = 0.25
-///     page = "127.0.0.1:8090"       # the run's page in a browser; none when left out
-///     page_token = "token.txt"      # file of what a control needs; needed beyond loopback, else one is drawn
-///     page_rate = "20 Hz"           # how often it moves, 1 to 60 Hz
-///     [live.circuit]                # of the virtual rig, see vehicle::read_circuit and CircuitDriveOptions
-///     signs = "before"              # or "while" or "off": when the telemetry's signs are checked
+/// A study of `veridyn cue --live`: platform, algorithm and rider as `veridyn cue` has them, and in `[live]` where
+/// motion comes from and goes to.
 struct LiveStudy {
   cueing::CueingStudy cueing;  ///< without a drive; one algorithm
   std::vector<io::PacketLayout> layouts;
@@ -94,7 +72,13 @@ struct LiveStudy {
   std::filesystem::path page_token;                 ///< file of its token; empty: one is drawn and printed
   double page_rate = 20.0;                          ///< of its statuses [Hz]
   RigOptions options;
+
+  /// `[live]`; what depends on its other keys and on `[platform]` is read by `read_live_study`.
+  [[nodiscard]] static const KeyTable<LiveStudy>& keys();
 };
+
+/// The keys of the tables of a live study besides those of cueing, in the order in which one writes them.
+[[nodiscard]] std::vector<StudyKeys> study_keys();
 
 /// Where orders go, for people: an address or a device.
 [[nodiscard]] std::string platform_name(const LiveStudy& study);
@@ -106,10 +90,8 @@ struct LiveStudy {
 /// The same study without names of files that a replay needs: calibration of a wheel and platform by their numbers.
 [[nodiscard]] Study self_contained(const Study& study, const LiveStudy& live);
 
-/// How the virtual vehicle sends, from `[live.vehicle]`:
-///     rate = "100 Hz", jitter = "20 ms", loss = 0.01, clock_drift = 50e-6, seed = 1
-/// @throws InputError with file, line and key
-[[nodiscard]] VirtualVehicleOptions read_virtual_vehicle(const StudyTable& live);
+/// `[live.vehicle]`: how the virtual vehicle sends.
+[[nodiscard]] const KeyTable<VirtualVehicleOptions>& virtual_vehicle_keys();
 
 /// "127.0.0.1:4123". @throws InputError at `place`
 [[nodiscard]] Sender parse_address(std::string_view text, const std::string& place);

@@ -3,24 +3,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/vehicle/simulation/surface_drive.hpp"
 
 namespace veridyn::live {
 
 using vehicle::DriveState;
 
-CircuitDriveOptions read_circuit_drive(const StudyTable& circuit) {
-  CircuitDriveOptions o;
-  o.speed = circuit.positive_or("speed", "m/s", o.speed);
-  o.laps = static_cast<long>(circuit.integer_or("laps", o.laps));
-  if (!(o.laps >= 1 && o.laps <= 1000)) circuit.fail("laps", fmt::format("= {}; takes 1 to 1000", o.laps));
-  const std::array<std::string, 2> directions{"counter-clockwise", "clockwise"};
-  o.clockwise = circuit.choice_or("direction", directions, directions[0]) == directions[1];
-  return o;
+const KeyTable<CircuitDriveOptions>& CircuitDriveOptions::keys() {
+  using O = CircuitDriveOptions;
+  static const auto table = KeyTable<O>("live.circuit", "How the virtual car drives around its circuit.")
+                                .number("speed", &O::speed, "m/s", kPositive, "that it holds, uphill and downhill")
+                                .count("laps", &O::laps, 1, 1000, "until it is put back to the start")
+                                .choice("direction", &O::clockwise, {{"counter-clockwise", false}, {"clockwise", true}},
+                                        "which way round, ramps and banks too");
+  return table;
 }
 
 CircuitDriver::CircuitDriver(std::shared_ptr<const vehicle::Circuit> circuit, const CircuitDriveOptions& options,

@@ -10,17 +10,14 @@
 namespace veridyn::live {
 
 /// How a virtual car is driven around a circuit, from `[live.circuit]`, whose other keys are those of
-/// `vehicle::read_circuit`:
-///
-///     speed = "1.8 m/s", laps = 2, direction = "counter-clockwise"   # or "clockwise"
+/// `vehicle::read_circuit`.
 struct CircuitDriveOptions {
   double speed = 1.8;      ///< [m/s]
   long laps = 2;           ///< until it is put back to the start
   bool clockwise = false;  ///< the other way round, ramps and banks too
-};
 
-/// @throws InputError with file, line and key
-[[nodiscard]] CircuitDriveOptions read_circuit_drive(const StudyTable& circuit);
+  [[nodiscard]] static const KeyTable<CircuitDriveOptions>& keys();
+};
 
 /// A driver who keeps to a circuit's middle line: steers towards a point ahead of the car (pure pursuit: Coulter 1992,
 /// CMU-RI-TR-92-01) and holds the speed, uphill and downhill.

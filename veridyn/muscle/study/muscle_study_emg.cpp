@@ -196,18 +196,31 @@ ComparedOutputs outputs_within(const MeasuredMotion& measured, const MuscleSubje
 
 }  // namespace
 
+const KeyTable<EmgSettings>& EmgSettings::keys() {
+  using S = EmgSettings;
+  static const auto error =
+      KeyTable<EmgError>("emg")
+          .number("noise", &EmgError::relative, "1", internal::kBelowOne,
+                  "of the envelopes, standard deviation over their value; 0: they are exact")
+          .number("noise_floor", &EmgError::absolute, "1", internal::kBelowOne, "besides, over full scale")
+          .number("bandwidth", &EmgError::bandwidth_Hz, "Hz", kPositive,
+                  "of the envelopes: how fast their error changes");
+  static const auto table =
+      KeyTable<S>("emg", "Muscles along recorded angles, driven by EMG.")
+          .with(&S::error, error)
+          .number("low_pass", &S::low_pass_Hz, "Hz", kPositive, "of the angles, without delay")
+          .otherwise("none")
+          .number("settle", &S::settle_s, "s", kNotNegative, "of each recording that is not compared")
+          .elsewhere({"resting", "", "", "none", "muscles without EMG that stay at their least activation", true})
+          .elsewhere({"columns", "", "", "the muscle's name",
+                      "a table: column of a `MUSCLE`; several muscles may share one", true})
+          .elsewhere({"maximum", "the files'", "> 0", "1",
+                      "a table: of a column its value at maximum voluntary contraction", true});
+  return table;
+}
+
 EmgSettings read_emg(const StudyTable& table, const Model& model) {
-  EmgSettings s;
-  s.error.relative = table.number_or("noise", "1", s.error.relative);
-  if (!(s.error.relative >= 0.0 && s.error.relative < 1.0))
-    table.fail("noise", fmt::format("= {:g} must be from 0 to below 1", s.error.relative));
-  s.error.absolute = table.number_or("noise_floor", "1", s.error.absolute);
-  if (!(s.error.absolute >= 0.0 && s.error.absolute < 1.0))
-    table.fail("noise_floor", fmt::format("= {:g} must be from 0 to below 1", s.error.absolute));
-  s.error.bandwidth_Hz = table.positive_or("bandwidth", "1/s", s.error.bandwidth_Hz);
-  if (table.has("low_pass")) s.low_pass_Hz = table.positive("low_pass", "1/s");
-  s.settle_s = table.number_or("settle", "s", s.settle_s);
-  if (!(s.settle_s >= 0.0)) table.fail("settle", fmt::format("= {:g} s must be >= 0", s.settle_s));
+  EmgSettings s = EmgSettings::keys().read(table);
   std::vector<std::string> column;
   for (const Muscle& muscle : model.muscles) column.push_back(muscle.name());
   const StudyTable columns = table.table_or_empty("columns");

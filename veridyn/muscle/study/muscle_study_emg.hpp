@@ -20,23 +20,11 @@ struct EmgSettings {
   EmgError error;
   double low_pass_Hz = 0.0;  ///< of the angles; 0: none
   double settle_s = 0.1;     ///< not compared at the beginning, while activation and fibres forget how they began
+
+  [[nodiscard]] static const KeyTable<EmgSettings>& keys();
 };
 
-/// Muscles along recorded angles, driven by EMG:
-///
-///     [emg]
-///     noise = "10 %"                 # of the envelopes, of their value, standard deviation; 0: they are exact
-///     noise_floor = 0                # besides, of full scale
-///     bandwidth = "6 Hz"             # of the envelopes: how fast their error changes
-///     low_pass = "6 Hz"              # of the angles (`MotionOptions`); none when left out
-///     settle = "0.1 s"               # of each recording that is not compared
-///     resting = ["TRImed"]           # muscles without EMG that stay at their least activation
-///     [emg.columns]                  # where a muscle's column has another name; several may share one
-///     BIClong = "BIC"
-///     BICshort = "BIC"
-///     [emg.maximum]                  # of maximum voluntary contraction, in the files' unit; 1 when left out
-///     BIC = 0.85
-///
+/// `[emg]`: muscles along recorded angles, driven by EMG.
 /// @throws InputError with file, line and key: muscles and columns that are not known, with the nearest name.
 [[nodiscard]] EmgSettings read_emg(const StudyTable& emg, const Model& model);
 
@@ -50,10 +38,6 @@ struct EmgTask {
 
 /// A recorded task (`[[task]]` with `angles`, `moments` and `emg`). The model's limit forces are subtracted from the
 /// moments, which are those of inverse dynamics: what is left is the muscles'.
-///
-///     angles = "curl_ik.mot"         # coordinates
-///     moments = "curl_id.sto"        # outputs: COORDINATE_moment, MUSCLE_fiber_length, ...
-///     emg = "curl_emg.csv"           # envelopes within 0 .. 1, or in the unit of [emg.maximum]
 ///
 /// `rest`: values of coordinates that the files do not have; `given`, by coordinate, whether the study says so.
 /// @throws InputError with the study's line and key, and the file: a coordinate that muscles cross and nothing gives,

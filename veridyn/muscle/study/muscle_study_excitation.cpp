@@ -10,9 +10,7 @@ namespace veridyn::muscle::internal {
 namespace {
 
 double excitation(const StudyTable& table, const std::string& key) {
-  const double value = table.number(key, "1");
-  if (!(value >= 0.0 && value <= 1.0)) table.fail(key, fmt::format("{} must be from 0 to 1", value));
-  return value;
+  return veridyn::internal::number_in(table, key, "1", from_to(0.0, 1.0));
 }
 
 /// Rows that repeat the one before hold nothing new; each would be an end of a step.
@@ -49,11 +47,6 @@ ControlSignals reserves_of(const SignalTable& table, const MusculoskeletalSystem
 
 }  // namespace
 
-Interpolation read_interpolation(const StudyTable& table) {
-  constexpr Words<Interpolation, 2> kWords{{{"linear", Interpolation::kLinear}, {"hold", Interpolation::kHold}}};
-  return word_or_first(table, "interpolation", kWords);
-}
-
 MuscleControls controls_of(const SignalTable& signals, const MusculoskeletalSystem& system,
                            std::span<const double> otherwise, Interpolation interpolation,
                            std::span<const double> reserves) {
@@ -61,7 +54,8 @@ MuscleControls controls_of(const SignalTable& signals, const MusculoskeletalSyst
           reserves_of(signals, system, reserves, interpolation)};
 }
 
-ReadFromFiles<MuscleControls> read_excitations(const StudyTable& motion, const MuscleStudy& study) {
+ReadFromFiles<MuscleControls> read_excitations(const StudyTable& motion, const MotionTable& keys,
+                                               const MuscleStudy& study) {
   const Model& model = study.system->model();
   const StudyTable table = motion.table_or_empty("excitation");
   std::vector<double> now(model.muscles.size(), table.has("default") ? excitation(table, "default") : 0.05);
@@ -70,11 +64,11 @@ ReadFromFiles<MuscleControls> read_excitations(const StudyTable& motion, const M
     now[muscle_of(table, key, key, model)] = excitation(table, key);
   }
   const std::vector<StudyTable> steps = motion.tables("excitation_step");
-  if (motion.has("excitation_file")) {
+  if (keys.excitation_file) {
     if (!steps.empty()) motion.fail("excitation_step", "and motion.excitation_file exclude each other");
-    const std::filesystem::path path = motion.file("excitation_file");
-    return {.value = controls_of(read_signals(path), *study.system, now, read_interpolation(motion), study.reserves),
-            .inputs = {path}};
+    return {.value = controls_of(read_signals(*keys.excitation_file), *study.system, now, keys.interpolation,
+                                 study.reserves),
+            .inputs = {*keys.excitation_file}};
   }
   std::vector<double> times{study.begin}, values = now;
   for (const StudyTable& step : steps) {

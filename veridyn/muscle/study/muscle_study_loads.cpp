@@ -12,9 +12,8 @@ namespace veridyn::muscle::internal {
 namespace {
 
 /// The name of columns, or three numbers into `constant`; true for numbers.
-bool read_columns(const StudyTable& table, const char* key, const char* unit, std::string& columns,
+bool read_columns(const StudyTable& table, const std::string& key, const char* unit, std::string& columns,
                   Eigen::Vector3d& constant) {
-  if (!table.has(key)) return false;
   if (table.is_text(key)) {
     columns = table.text(key);
     if (columns.empty()) table.fail(key, "names no columns");
@@ -28,15 +27,9 @@ bool read_columns(const StudyTable& table, const char* key, const char* unit, st
 
 /// A load as `[[motion.external_load]]` has it, without its data.
 ExternalLoadSource read_source(const StudyTable& table) {
-  ExternalLoadSource source;
+  ExternalLoadSource source = external_load_keys().read(table);
   source.place = table.place("");
-  source.body = table.text("body");
-  source.name = table.text_or("name", source.body);
-  source.force_frame = table.text_or("force_frame", source.force_frame);
-  source.point_frame = table.text_or("point_frame", source.point_frame);
-  read_columns(table, "force", "N", source.force, source.constant_force);
-  read_columns(table, "torque", "N m", source.moment, source.constant_moment);
-  source.has_constant_point = read_columns(table, "point", "m", source.point, source.constant_point);
+  if (source.name.empty()) source.name = source.body;
   if (!table.has("force") && !table.has("torque")) table.fail("force", "is missing, and so is a torque");
   const bool columns = !source.force.empty() || !source.moment.empty() || !source.point.empty();
   if (columns != table.has("file"))
@@ -55,21 +48,50 @@ void check_cover(const StudyTable& table, const char* key, const SignalTable& da
 
 }  // namespace
 
+const KeyTable<ExternalLoadSource>& external_load_keys() {
+  using S = ExternalLoadSource;
+  static const char* const kColumns = "what the names of three columns begin with, or three numbers";
+  static const auto table =
+      KeyTable<S>("motion.external_load", "A force of the surroundings; it acts at `point` of `body`.")
+          .repeated()
+          .text("body", &S::body, "on which it acts")
+          .required()
+          .elsewhere({"file", "", "a file", "none", "that holds the columns", true})
+          .other({"force", "N", kColumns, "none", "what the surroundings do to the body", true},
+                 [](const StudyTable& t, const std::string& key, S& s) {
+                   read_columns(t, key, "N", s.force, s.constant_force);
+                 })
+          .other({"torque", "N m", kColumns, "none", "besides; one of the two must be there", true},
+                 [](const StudyTable& t, const std::string& key, S& s) {
+                   read_columns(t, key, "N m", s.moment, s.constant_moment);
+                 })
+          .other({"point", "m", kColumns, "the body's origin", "where the force acts", true},
+                 [](const StudyTable& t, const std::string& key, S& s) {
+                   s.has_constant_point = read_columns(t, key, "m", s.point, s.constant_point);
+                 })
+          .text("force_frame", &S::force_frame, "body in whose axes force and torque are")
+          .text("point_frame", &S::point_frame, "body in whose frame the point is")
+          .text("name", &S::name, "for the results")
+          .otherwise("the body");
+  return table;
+}
+
 ReadFromFiles<std::shared_ptr<const ExternalLoads>> read_external_loads(const StudyTable& motion,
+                                                                        const MotionTable& keys,
                                                                         const MuscleStudy& study) {
   ReadFromFiles<std::shared_ptr<const ExternalLoads>> read;
   ExternalLoads loads;
   const Model& model = study.system->model();
-  const double low_pass_Hz = motion.has("external_low_pass") ? motion.positive("external_low_pass", "1/s") : 0.0;
-  if (motion.has("external_loads")) {
-    const std::filesystem::path path = motion.file("external_loads");
+  const double low_pass_Hz = keys.external_low_pass_Hz.value_or(0.0);
+  if (keys.external_loads) {
+    const std::filesystem::path& path = *keys.external_loads;
     ExternalLoadsFile file = muscle::read_external_loads(path);
     read.inputs.push_back(path);
     read.warnings = std::move(file.warnings);
     const char* key = "external_loads";
-    if (motion.has("external_loads_data")) {
+    if (keys.external_loads_data) {
       key = "external_loads_data";
-      file.data = motion.file(key);
+      file.data = *keys.external_loads_data;
     }
     if (file.data.empty())
       motion.fail(key, fmt::format("{} names no datafile; external_loads_data = \"x.mot\" does", path.string()));
@@ -77,7 +99,7 @@ ReadFromFiles<std::shared_ptr<const ExternalLoads>> read_external_loads(const St
     read.inputs.push_back(file.data);
     check_cover(motion, key, data, study);
     add_external_loads(file.sources, &data, model, low_pass_Hz, loads);
-  } else if (motion.has("external_loads_data")) {
+  } else if (keys.external_loads_data) {
     motion.fail("external_loads_data", "has no meaning without external_loads");
   }
   for (const StudyTable& table : motion.tables("external_load")) {
@@ -90,7 +112,7 @@ ReadFromFiles<std::shared_ptr<const ExternalLoads>> read_external_loads(const St
     }
     add_external_loads({&source, 1}, data ? &*data : nullptr, model, low_pass_Hz, loads);
   }
-  if (loads.empty() && motion.has("external_low_pass") && !motion.has("external_loads"))
+  if (loads.empty() && keys.external_low_pass_Hz && !keys.external_loads)
     motion.fail("external_low_pass", "has no meaning without external loads");
   if (!loads.empty()) read.value = std::make_shared<const ExternalLoads>(std::move(loads));
   return read;

@@ -9,9 +9,6 @@
 namespace veridyn::muscle::internal {
 namespace {
 
-constexpr Words<RampShape, 3> kShapes{
-    {{"minimum jerk", RampShape::kMinimumJerk}, {"half sine", RampShape::kHalfSine}, {"linear", RampShape::kLinear}}};
-
 /// By coordinate.
 std::vector<std::vector<Ramp>> read_ramps(const StudyTable& motion, const MuscleStudy& study) {
   const Model& model = study.system->model();
@@ -42,7 +39,8 @@ std::vector<std::vector<Ramp>> read_ramps(const StudyTable& motion, const Muscle
 
 Ramp read_ramp(const StudyTable& table, const Coordinate& coordinate, const RampOrigin& origin) {
   const Ramp* before = origin.before;
-  Ramp ramp;
+  Ramp ramp{.start = before != nullptr ? before->start + before->duration : origin.begin};
+  ramp_keys().read(table, ramp);
   ramp.from = before != nullptr ? before->to : origin.rest;
   if (table.has("from")) {
     const double from = coordinate_value(table, "from", coordinate);
@@ -53,14 +51,11 @@ Ramp read_ramp(const StudyTable& table, const Coordinate& coordinate, const Ramp
     ramp.from = from;
   }
   ramp.to = coordinate_value(table, "to", coordinate);
-  ramp.start = table.number_or("start", "s", before != nullptr ? before->start + before->duration : origin.begin);
-  ramp.duration = table.positive("duration", "s");
   if (before != nullptr && !(ramp.start >= before->start + before->duration - 1e-12)) {
     table.fail("start", fmt::format("{:g} s is before the end of the ramp before, {:g} s", ramp.start,
                                     before->start + before->duration));
   }
   if (before != nullptr) ramp.start = std::max(ramp.start, before->start + before->duration);
-  ramp.shape = word_or_first(table, "shape", kShapes);
   return ramp;
 }
 

@@ -1,15 +1,12 @@
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/study.hpp"
-#include "veridyn/muscle/model/ramp.hpp"
-#include "veridyn/muscle/study/motion_study.hpp"
+#include "veridyn/muscle/study/motion_table.hpp"
 
 /// The parts that `read_study` reads one after the other, and what they share. Each throws InputError with file, line
 /// and key. A part that takes a study looks at what was read of it before.
@@ -25,22 +22,6 @@ namespace veridyn::muscle::internal {
 /// Refuses a coordinate that follows another one.
 void check_not_coupled(const StudyTable& table, const std::string& key, std::size_t coordinate,
                        const MuscleSubject& subject);
-
-/// What a study's words for an enumeration mean.
-template <typename Value, std::size_t kWords>
-using Words = std::array<std::pair<const char*, Value>, kWords>;
-
-/// The value of an enumeration that a study names; the first when the key is left out.
-template <typename Value, std::size_t kWords>
-[[nodiscard]] Value word_or_first(const StudyTable& table, const std::string& key, const Words<Value, kWords>& words) {
-  std::array<std::string, kWords> names;
-  for (std::size_t i = 0; i < kWords; ++i) names[i] = words[i].first;
-  const std::string word = table.choice_or(key, names, names.front());
-  for (const auto& [name, value] : words) {
-    if (word == name) return value;
-  }
-  return words.front().second;
-}
 
 /// A value, and what to remember of the files that it was read from.
 template <typename Value>
@@ -60,14 +41,11 @@ template <typename Value>
 
 /// Title and `[subject]` of a study: the model, its parameters, loads and paths, as a system.
 [[nodiscard]] MuscleSubject read_subject(const StudyTable& root, Progress& progress);
-/// `accuracy` of simulations, from 1e-13 to 0.1.
-[[nodiscard]] double read_accuracy(const StudyTable& table, double otherwise);
-/// `reserve_force`, of an actuator that helps each free coordinate [N m or N].
-[[nodiscard]] double read_reserve_force(const StudyTable& table, double otherwise);
-/// `reserve_force` and `[motion.reserves]`, by coordinate.
-[[nodiscard]] std::vector<double> read_reserves(const StudyTable& motion, const Model& model);
+/// `[motion.reserves]`, by coordinate; `otherwise` of those that it does not name.
+[[nodiscard]] std::vector<double> read_reserves(const StudyTable& motion, double otherwise, const Model& model);
 /// `external_loads`, `[[motion.external_load]]`; null: none. They cover the study's time.
 [[nodiscard]] ReadFromFiles<std::shared_ptr<const ExternalLoads>> read_external_loads(const StudyTable& motion,
+                                                                                      const MotionTable& keys,
                                                                                       const MuscleStudy& study);
 /// A load as `[[subject.load]]` has it.
 [[nodiscard]] HeldLoad read_load(const StudyTable& table, const Model& model);
@@ -81,21 +59,19 @@ struct RampOrigin {
 };
 /// A ramp as `[[motion.ramp]]` has it.
 [[nodiscard]] Ramp read_ramp(const StudyTable& table, const Coordinate& coordinate, const RampOrigin& origin);
-/// `interpolation`, "linear" when left out.
-[[nodiscard]] Interpolation read_interpolation(const StudyTable& table);
 /// Excitations and reserves of a file; muscles without a column keep `otherwise`. `reserves` are the forces of their
 /// actuators at control 1, by coordinate.
 [[nodiscard]] MuscleControls controls_of(const SignalTable& signals, const MusculoskeletalSystem& system,
                                          std::span<const double> otherwise, Interpolation interpolation,
                                          std::span<const double> reserves);
-/// Options of computed muscle control as `[motion.control]` has them: window, gains, least and greatest control.
-[[nodiscard]] ControlOptions read_control_options(const StudyTable& table);
 /// `[motion.start]`, `[motion.start_speed]`.
 [[nodiscard]] StartState read_start(const StudyTable& motion, const MuscleStudy& study);
 /// `start_file`: states as `simulate` and OpenSim write them; the study's start where it has none.
-[[nodiscard]] ReadFromFiles<StartState> read_start_file(const StudyTable& motion, const MuscleStudy& study);
+[[nodiscard]] ReadFromFiles<StartState> read_start_file(const StudyTable& motion, const MotionTable& keys,
+                                                        const MuscleStudy& study);
 /// `[motion.excitation]`, `[[motion.excitation_step]]`, `excitation_file`.
-[[nodiscard]] ReadFromFiles<MuscleControls> read_excitations(const StudyTable& motion, const MuscleStudy& study);
+[[nodiscard]] ReadFromFiles<MuscleControls> read_excitations(const StudyTable& motion, const MotionTable& keys,
+                                                             const MuscleStudy& study);
 /// A motion to follow, and the coordinates whose motion the study gives.
 struct DesiredMotion {
   Motion motion;

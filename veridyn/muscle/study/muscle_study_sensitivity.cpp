@@ -10,45 +10,40 @@
 #include "veridyn/muscle/study/muscle_study_unknowns.hpp"
 
 namespace veridyn::muscle {
-namespace {
 
-std::size_t count_or(const StudyTable& table, const char* key, std::size_t otherwise, long long least) {
-  const long long value = table.integer_or(key, static_cast<long long>(otherwise));
+const KeyTable<SensitivityStudyOptions>& sensitivity_keys() {
   constexpr long long kMost = 10000000;
-  if (value < least || value > kMost) table.fail(key, fmt::format("= {} must be from {} to {}", value, least, kMost));
-  return static_cast<std::size_t>(value);
+  using Sampling = MuscleSamplingOptions;
+  using Cover = CoverOptions;
+  static const auto sampling =
+      KeyTable<Sampling>("sensitivity")
+          .count("samples", &Sampling::samples, 1, kMost,
+                 "points of the Sobol sequence for each muscle, a power of two uses it best; published: 500")
+          .number("range", &Sampling::range, "1", share_up_to(0.49), "share by which F0, L0 and LS go up and down")
+          .flag("scrambled", &Sampling::scrambled,
+                "random digital shift of the sequence, from `seed`; `false`: as it is, as published")
+          .number("accuracy", &Sampling::accuracy, "1", internal::kAccuracies, "of the simulations");
+  static const auto cover =
+      KeyTable<Cover>("sensitivity")
+          .count("choose", &Cover::tasks, 0, kMost, "tasks; 0: as few as excite every muscle")
+          .number("cover_share", &Cover::share, "1", share_up_to(1.0),
+                  "a task excites a muscle with this share of the greatest NRMSE that any task has of it")
+          .number("least_nrmse", &Cover::least_nrmse, "1", share_up_to(1.0),
+                  "below it in every task a muscle counts as excited by none");
+  static const auto table = KeyTable<SensitivityStudyOptions>("sensitivity", "Which muscle moves which task.")
+                                .with(&SensitivityStudyOptions::sampling, sampling)
+                                .with(&SensitivityStudyOptions::cover, cover);
+  return table;
 }
-
-double share_or(const StudyTable& table, const char* key, double otherwise, double most) {
-  const double value = table.number_or(key, "1", otherwise);
-  if (!(value > 0.0 && value <= most))
-    table.fail(key, fmt::format("= {:g} must be above 0 and at most {:g}; \"5 %\" is 0.05", value, most));
-  return value;
-}
-
-SensitivityStudyOptions read_options(const StudyTable& table, std::uint64_t seed) {
-  SensitivityStudyOptions o;
-  o.sampling.samples = count_or(table, "samples", o.sampling.samples, 1);
-  o.sampling.range = share_or(table, "range", o.sampling.range, 0.49);
-  o.sampling.scrambled = table.flag_or("scrambled", o.sampling.scrambled);
-  o.sampling.accuracy = table.positive_or("accuracy", "1", o.sampling.accuracy);
-  if (!(o.sampling.accuracy >= 1e-13 && o.sampling.accuracy <= 0.1))
-    table.fail("accuracy", fmt::format("{:g} must be from 1e-13 to 0.1", o.sampling.accuracy));
-  o.sampling.seed = seed;
-  o.cover.tasks = count_or(table, "choose", o.cover.tasks, 0);
-  o.cover.share = share_or(table, "cover_share", o.cover.share, 1.0);
-  o.cover.least_nrmse = share_or(table, "least_nrmse", o.cover.least_nrmse, 1.0);
-  o.indices = estimation::read_index_options(table, seed);
-  return o;
-}
-
-}  // namespace
 
 SensitivityStudy read_sensitivity_study(const Study& source, Progress& progress) {
   const StudyTable& root = source.root();
   SensitivityStudy study;
   study.seed = static_cast<std::uint64_t>(root.integer_or("seed", 1));
-  study.options = read_options(root.table_or_empty("sensitivity"), study.seed);
+  const StudyTable table = root.table_or_empty("sensitivity");
+  study.options = sensitivity_keys().read(table);
+  study.options.sampling.seed = study.seed;
+  study.options.indices = estimation::read_index_options(table, study.seed);
   study.subject = internal::read_subject(root, progress);
   study.title = study.subject.title;
   const Model& model = study.subject.system->model();

@@ -24,24 +24,11 @@ struct SensitivityStudy {
   std::vector<std::filesystem::path> inputs;  ///< files read
 };
 
+/// `[sensitivity]`.
+[[nodiscard]] const KeyTable<SensitivityStudyOptions>& sensitivity_keys();
+
 /// Reads `[subject]`, `[tasks]`, `[[task]]` (`read_tasks`), `[[parameter]]` (`read_unknowns`: inputs of the indices;
-/// F0, L0 and LS of each muscle when there is none) and
-///
-///     [sensitivity]
-///     samples = 512          # points of the Sobol sequence for each muscle; published: 500
-///     range = "5 %"          # by which F0, L0 and LS of a muscle go up and down
-///     scrambled = true       # random digital shift of the sequence; false: as it is, as published
-///     choose = 4             # tasks; 0: as few as excite every muscle
-///     cover_share = "50 %"   # a task excites a muscle with this share of the greatest NRMSE that any task has of it
-///     least_nrmse = 1e-3     # below it in every task a muscle counts as not excited
-///     method = "variance"    # first and total indices of the chosen tasks; "morris"; "none"
-///     index_samples = 512    # N of N (inputs + 2) points; a power of two is best
-///     replicates = 16        # independent parts of these samples, whose spread makes the intervals
-///     level = 0.95           # of these intervals
-///     trajectories = 20      # of Morris
-///     levels = 4             # of Morris' grid
-///     accuracy = 1e-5        # of the simulations
-///
+/// F0, L0 and LS of each muscle when there is none) and `[sensitivity]` (also `estimation::read_index_options`).
 /// Tables of other commands are left as they are. Tasks that are held out stay for validation and are not looked at.
 /// @throws InputError with file, line and key.
 [[nodiscard]] SensitivityStudy read_sensitivity_study(const Study& study, Progress& progress);

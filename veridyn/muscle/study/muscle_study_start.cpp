@@ -59,11 +59,11 @@ StartState read_start(const StudyTable& motion, const MuscleStudy& study) {
   return start;
 }
 
-ReadFromFiles<StartState> read_start_file(const StudyTable& motion, const MuscleStudy& study) {
+ReadFromFiles<StartState> read_start_file(const StudyTable& motion, const MotionTable& keys, const MuscleStudy& study) {
   ReadFromFiles<StartState> read{.value = study.start};
-  if (!motion.has("start_file")) return read;
+  if (!keys.start_file) return read;
   const Model& model = study.system->model();
-  const std::filesystem::path path = motion.file("start_file");
+  const std::filesystem::path& path = *keys.start_file;
   const SignalTable table = read_signals(path);
   read.inputs.push_back(path);
   StartState& start = read.value;

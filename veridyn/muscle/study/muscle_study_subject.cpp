@@ -56,11 +56,12 @@ void read_parameters(const StudyTable& table, Model& model, std::vector<Paramete
   }
 }
 
-std::vector<std::string> coordinate_list(const StudyTable& table, const std::string& key, const Model& model) {
-  if (!table.has(key)) return {};
-  std::vector<std::string> names = table.texts(key);
-  for (const std::string& name : names) static_cast<void>(coordinate_of(table, key, name, model));
-  return names;
+std::string parameters_sentence() {
+  std::string text;
+  for (const MusculotendonField& p : kMusculotendonFields)
+    text += fmt::format("{}`{}`{}", text.empty() ? "" : ", ", p.name,
+                        std::string_view(p.unit) == "1" ? "" : fmt::format(" [{}]", p.unit));
+  return "a table, `\"MUSCLE.PARAMETER\" = value`, set after `fiber_lengths_from`: " + text;
 }
 
 /// A file, or a built-in model by its name.
@@ -120,21 +121,51 @@ ReadFromFiles<MatchedLengths> matched_to_reference(const StudyTable& subject, co
 
 }  // namespace
 
+const KeyTable<HeldLoad>& load_keys() {
+  static const auto table =
+      KeyTable<HeldLoad>("subject.load", "A point mass that a body carries.")
+          .repeated()
+          .text("body", &HeldLoad::body, "that carries it")
+          .required()
+          .number("mass", &HeldLoad::mass, "kg", kPositive, "of the load")
+          .required()
+          .numbers("location", &HeldLoad::location, "m", kAnyNumber, "x, y, z in the body's frame");
+  return table;
+}
+
+const KeyTable<SystemOptions>& subject_keys() {
+  using O = SystemOptions;
+  static const auto table =
+      KeyTable<O>("subject", "The model, and what of it is changed.")
+          .elsewhere({"model", "", "", "", "a file `.osim`, or the name of a built-in model: `arm`, `legs`"})
+          .required()
+          .choice("paths", &O::paths,
+                  {{"exact", PathSource::kExact}, {"fitted", PathSource::kFitted}, {"opensim", PathSource::kAsOpenSim}},
+                  "where lengths of muscle paths come from")
+          .texts("locked", &O::locked, "coordinates held where they start although the model frees them")
+          .texts("unlocked", &O::unlocked, "coordinates that move although the model locks them")
+          .flag("without_contact", &O::without_contact,
+                "leave the model's contacts out; must be said where an external load acts on a body with contact")
+          .flag("without_unsupported", &O::without_unsupported,
+                "go on without forces and constraints that are not understood")
+          .elsewhere({"fiber_lengths_from", "", "", "none",
+                      "a reference model (file or built-in): L0 and LS of each muscle become those with which its "
+                      "normalised fibre lengths and tendon strains at the same joint angles are the reference's "
+                      "(Modenese et al. 2016): the first guess for a model of which only the bones were scaled. "
+                      "Muscles are matched by name; what has no match, or a poor one, is named",
+                      true})
+          .elsewhere({"parameters", "", "", "the model's", parameters_sentence(), true});
+  return table;
+}
+
 HeldLoad read_load(const StudyTable& table, const Model& model) {
-  HeldLoad load;
-  load.body = table.text("body");
+  HeldLoad load = load_keys().read(table);
   const int body = model.body(load.body);
   if (body <= 0) {
     std::vector<std::string> names;
     for (std::size_t i = 1; i < model.bodies.size(); ++i) names.push_back(model.bodies[i].name);
     table.fail("body", fmt::format("= '{}' is no body of model '{}' that could carry a load{}", load.body, model.name,
                                    suggestion(load.body, names)));
-  }
-  load.mass = table.positive("mass", "kg");
-  if (table.has("location")) {
-    const std::vector<double> at = table.numbers("location", "m");
-    if (at.size() != 3) table.fail("location", fmt::format("has {} numbers, expected x, y, z", at.size()));
-    load.location = Eigen::Vector3d(at[0], at[1], at[2]);
   }
   return load;
 }
@@ -167,6 +198,7 @@ void check_not_coupled(const StudyTable& table, const std::string& key, std::siz
 
 MuscleSubject read_subject(const StudyTable& root, Progress& progress) {
   const StudyTable table = root.table("subject");
+  const SystemOptions options = subject_keys().read(table);
   MuscleSubject subject;
   subject.title = root.text_or("title", "");
   subject.model_name = table.text("model");
@@ -184,18 +216,12 @@ MuscleSubject read_subject(const StudyTable& root, Progress& progress) {
     const HeldLoad& load = subject.loads.back();
     add_load(model, load.body, load.mass, load.location);
   }
-  SystemOptions options;
-  constexpr Words<PathSource, 3> kSources{
-      {{"exact", PathSource::kExact}, {"fitted", PathSource::kFitted}, {"opensim", PathSource::kAsOpenSim}}};
-  options.paths = word_or_first(table, "paths", kSources);
-  options.locked = coordinate_list(table, "locked", model);
-  options.unlocked = coordinate_list(table, "unlocked", model);
+  for (const std::string& name : options.locked) static_cast<void>(coordinate_of(table, "locked", name, model));
+  for (const std::string& name : options.unlocked) static_cast<void>(coordinate_of(table, "unlocked", name, model));
   for (const std::string& name : options.unlocked) {
     if (std::find(options.locked.begin(), options.locked.end(), name) != options.locked.end())
       table.fail("unlocked", fmt::format("names '{}', which subject.locked names too", name));
   }
-  options.without_unsupported = table.flag_or("without_unsupported", false);
-  options.without_contact = table.flag_or("without_contact", false);
   if (options.paths == PathSource::kFitted) progress.stage("fitting polynomials to the muscle paths");
   subject.system = std::make_unique<MusculoskeletalSystem>(std::move(model), options);
   if (subject.system->reduction().free().empty())

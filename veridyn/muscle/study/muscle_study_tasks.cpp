@@ -15,41 +15,13 @@
 namespace veridyn::muscle {
 namespace {
 
-/// What [tasks] says for all of them.
-struct SharedSettings {
-  ElbowTaskOptions elbow;
-  double accuracy = StudyTasks{}.accuracy;
-  double reserve_force = 1.0;
-};
-
-SharedSettings read_shared(const StudyTable& table, const MuscleSubject& subject) {
-  SharedSettings s;
-  s.elbow.elbow = table.text_or("elbow", "");
-  s.elbow.shoulder = table.text_or("shoulder", "");
+TasksTable read_shared(const StudyTable& table, const MuscleSubject& subject) {
+  TasksTable s = TasksTable::keys().read(table);
   const Model& model = subject.system->model();
-  for (const char* key : {"elbow", "shoulder"}) {
-    if (table.has(key)) static_cast<void>(internal::coordinate_of(table, key, table.text(key), model));
+  for (const auto& [key, name] : {std::pair{"elbow", s.elbow.elbow}, std::pair{"shoulder", s.elbow.shoulder}}) {
+    if (table.has(key)) static_cast<void>(internal::coordinate_of(table, key, name, model));
   }
-  s.elbow.load = table.number_or("load", "kg", subject.loads.empty() ? s.elbow.load : 0.0);
-  if (!(s.elbow.load >= 0.0)) table.fail("load", fmt::format("{:g} kg must be >= 0", s.elbow.load));
-  s.elbow.load_body = table.text_or("load_body", "");
-  if (table.has("load_location")) {
-    const std::vector<double> location = table.numbers("load_location", "m");
-    if (location.size() != 3)
-      table.fail("load_location", fmt::format("has {} numbers, expected x, y, z", location.size()));
-    s.elbow.load_location = Eigen::Vector3d(location[0], location[1], location[2]);
-  }
-  s.elbow.start = table.number_or("start", "s", s.elbow.start);
-  if (!(s.elbow.start >= 0.0)) table.fail("start", fmt::format("{:g} s must be >= 0", s.elbow.start));
-  s.elbow.duration = table.positive_or("duration", "s", s.elbow.duration);
-  s.elbow.rate_Hz = table.positive_or("rate", "1/s", s.elbow.rate_Hz);
-  if (!(s.elbow.rate_Hz * (s.elbow.start + s.elbow.duration) <= 1e6))
-    table.fail("rate", fmt::format("{:g} Hz makes more than a million samples", s.elbow.rate_Hz));
-  if (s.elbow.rate_Hz * (s.elbow.start + s.elbow.duration) < 2.0)
-    table.fail("rate", fmt::format("{:g} Hz leaves fewer than two samples", s.elbow.rate_Hz));
-  s.accuracy = internal::read_accuracy(table, s.accuracy);
-  s.reserve_force = internal::read_reserve_force(table, s.reserve_force);
-  s.elbow.control = internal::read_control_options(table.table_or_empty("control"));
+  s.elbow.load = s.load.value_or(subject.loads.empty() ? s.elbow.load : 0.0);
   s.elbow.control.reserve_force = s.reserve_force;
   s.elbow.control.accuracy = s.accuracy;
   return s;
@@ -112,15 +84,13 @@ ElbowTasks read_elbow_tasks(const StudyTable& table, const ElbowTaskOptions& sta
 }
 
 /// The desired motion of `file`; without it one that leaves every coordinate open.
-internal::ReadFromFiles<Motion> read_desired_file(const StudyTable& table, const Model& model) {
+internal::ReadFromFiles<Motion> read_desired_file(const TaskTable& keys, const Model& model) {
   internal::ReadFromFiles<Motion> read{.value = {}};
   read.value.coordinate.resize(model.coordinates.size());
-  if (!table.has("file")) return read;
-  MotionOptions options;
-  if (table.has("low_pass")) options.low_pass_Hz = table.positive("low_pass", "1/s");
-  read.inputs.push_back(table.file("file"));
-  const SignalTable signals = read_signals(read.inputs.front());
-  read.value = make_motion(signals, model, options);
+  if (!keys.file) return read;
+  read.inputs.push_back(*keys.file);
+  const SignalTable signals = read_signals(*keys.file);
+  read.value = make_motion(signals, model, {.low_pass_Hz = keys.low_pass_Hz.value_or(0.0)});
   refuse_degrees(signals, model);
   return read;
 }
@@ -184,34 +154,35 @@ TaskMotion read_task_ramps(const StudyTable& table, const MuscleSubject& subject
 }
 
 /// The task with the controls of its `excitation_file`, and their times where nothing else says how long it is.
-internal::ReadFromFiles<Task> with_controls(const StudyTable& table, const MuscleSubject& subject,
-                                            const SharedSettings& settings, Task task) {
-  if (!table.has("excitation_file")) return {.value = std::move(task)};
-  const std::filesystem::path path = table.file("excitation_file");
+internal::ReadFromFiles<Task> with_controls(const StudyTable& table, const TaskTable& keys,
+                                            const MuscleSubject& subject, const TasksTable& settings, Task task) {
+  if (!keys.excitation_file) return {.value = std::move(task)};
+  const std::filesystem::path& path = *keys.excitation_file;
   const SignalTable signals = read_signals(path);
   const std::vector<double> least(subject.system->model().muscles.size(), settings.elbow.control.min_control);
   const std::vector<double> reserves(subject.system->coordinates(), settings.reserve_force);
-  task.controls = internal::controls_of(signals, *subject.system, least, internal::read_interpolation(table), reserves);
-  if (!table.has("measured") && !table.has("file") && !table.has("duration")) {
+  task.controls = internal::controls_of(signals, *subject.system, least, keys.interpolation, reserves);
+  if (!keys.measured && !keys.file && !keys.duration) {
     task.begin = signals.time.front();
     task.end = signals.time.back();
   }
   const double slack = 0.05 * (task.end - task.begin);
-  if (!table.has("measured") && (signals.time.front() > task.begin + slack || signals.time.back() < task.end - slack))
+  if (!keys.measured && (signals.time.front() > task.begin + slack || signals.time.back() < task.end - slack))
     table.fail("excitation_file", fmt::format("has {:g} .. {:g} s, the task {:g} .. {:g} s", signals.time.front(),
                                               signals.time.back(), task.begin, task.end));
   return {.value = std::move(task), .inputs = {path}};
 }
 
 /// The task with what was `measured` of it, at those times.
-internal::ReadFromFiles<Task> with_measured(const StudyTable& table, const MuscleSubject& subject,
-                                            std::span<const MuscleOutput> outputs, Task task) {
-  if (!table.has("measured")) return {.value = std::move(task)};
+internal::ReadFromFiles<Task> with_measured(const StudyTable& table, const TaskTable& keys,
+                                            const MuscleSubject& subject, std::span<const MuscleOutput> outputs,
+                                            Task task) {
+  if (!keys.measured) return {.value = std::move(task)};
   if (!task.controls)
     table.fail("measured",
                "needs excitation_file, the controls with which it was performed: those computed for the "
                "standard model are not this person's");
-  const std::filesystem::path path = table.file("measured");
+  const std::filesystem::path& path = *keys.measured;
   task.measured = read_measured_motion(read_signals(path), subject.system->model(), outputs);
   const std::vector<double>& time = task.measured->time;
   task.begin = time.front();
@@ -253,13 +224,13 @@ bool is_recorded(const StudyTable& table, bool emg) {
 }
 
 /// What all tasks have: name, whether it is held out, settings.
-Task started_task(const StudyTable& table, const ElbowTaskOptions& shared) {
-  return {.name = table.text("name"),
+Task started_task(const TaskTable& keys, const ElbowTaskOptions& shared) {
+  return {.name = keys.name,
           .begin = 0.0,
           .end = 0.0,
           .rate_Hz = shared.rate_Hz,
           .control = shared.control,
-          .hold_out = table.flag_or("hold_out", false)};
+          .hold_out = keys.hold_out};
 }
 
 /// Motion in which what is held rests.
@@ -269,10 +240,10 @@ Motion holding(Motion motion, std::span<const HeldCoordinate> held) {
 }
 
 /// A task recorded with EMG.
-internal::ReadFromFiles<Task> read_recorded_task(const StudyTable& table, const MuscleSubject& subject,
-                                                 const ElbowTaskOptions& shared, std::span<const MuscleOutput> outputs,
-                                                 const EmgSettings& emg) {
-  Task task = started_task(table, shared);
+internal::ReadFromFiles<Task> read_recorded_task(const StudyTable& table, const TaskTable& keys,
+                                                 const MuscleSubject& subject, const ElbowTaskOptions& shared,
+                                                 std::span<const MuscleOutput> outputs, const EmgSettings& emg) {
+  Task task = started_task(keys, shared);
   const Model& model = subject.system->model();
   task.held = read_pose(table.table_or_empty("held"), subject);
   task.desired.coordinate.resize(model.coordinates.size());
@@ -293,12 +264,12 @@ internal::ReadFromFiles<Task> read_recorded_task(const StudyTable& table, const 
 }
 
 /// A task that is simulated forward.
-internal::ReadFromFiles<Task> read_simulated_task(const StudyTable& table, const MuscleSubject& subject,
-                                                  const SharedSettings& settings,
+internal::ReadFromFiles<Task> read_simulated_task(const StudyTable& table, const TaskTable& keys,
+                                                  const MuscleSubject& subject, const TasksTable& settings,
                                                   std::span<const MuscleOutput> outputs) {
-  Task task = started_task(table, settings.elbow);
+  Task task = started_task(keys, settings.elbow);
   const Model& model = subject.system->model();
-  internal::ReadFromFiles<Motion> file = read_desired_file(table, model);
+  internal::ReadFromFiles<Motion> file = read_desired_file(keys, model);
   task.begin = file.value.begin;
   task.end = file.value.end;
   task.held = read_pose(table.table_or_empty("held"), subject);
@@ -317,13 +288,13 @@ internal::ReadFromFiles<Task> read_simulated_task(const StudyTable& table, const
     inputs.insert(inputs.end(), read.inputs.begin(), read.inputs.end());
     return std::move(read.value);
   };
-  task = taken(with_controls(table, subject, settings, std::move(task)));
-  task = taken(with_measured(table, subject, outputs, std::move(task)));
+  task = taken(with_controls(table, keys, subject, settings, std::move(task)));
+  task = taken(with_measured(table, keys, subject, outputs, std::move(task)));
   if (!motion.moves && !task.controls)
     table.fail("name",
                fmt::format("= '{}' has no motion: it needs [[task.ramp]], a file or an excitation_file", task.name));
-  if (table.has("duration") && !task.measured) task.end = task.begin + table.positive("duration", "s");
-  if (table.has("duration") && task.measured)
+  if (keys.duration && !task.measured) task.end = task.begin + *keys.duration;
+  if (keys.duration && task.measured)
     table.fail("duration", "and measured are both given; the recording says how long it is");
   if (!(task.end > task.begin)) table.fail("duration", "is missing: nothing says how long the task is");
   if (!task.measured && (task.end - task.begin) * task.rate_Hz < 2.0)
@@ -336,11 +307,79 @@ internal::ReadFromFiles<Task> read_simulated_task(const StudyTable& table, const
 
 }  // namespace
 
+const KeyTable<TasksTable>& TasksTable::keys() {
+  using O = ElbowTaskOptions;
+  static const auto elbow =
+      KeyTable<O>("tasks")
+          .elsewhere(
+              {"numbers", "", "1 to 42", "none", "elbow tasks to estimate from; `\"all\"`: those possible", true})
+          .elsewhere({"hold_out", "", "1 to 42", "none", "further ones, to validate on", true})
+          .text("elbow", &O::elbow, "coordinate that moves")
+          .otherwise("the only one with \"elbow\" in its name")
+          .text("shoulder", &O::shoulder, "coordinate that is held")
+          .otherwise("the only one with \"shoulder\" in its name")
+          .text("load_body", &O::load_body, "that carries the load")
+          .otherwise("the body that the elbow moves")
+          .other({"load_location", "m", "three numbers", "twice as far as its mass centre: the end of a uniform rod",
+                  "x, y, z in that body's frame", true},
+                 [](const StudyTable& t, const std::string& key, O& o) {
+                   const std::vector<double> at = veridyn::internal::numbers_in(t, key, "m", kAnyNumber, 3);
+                   o.load_location = Eigen::Vector3d(at[0], at[1], at[2]);
+                 })
+          .number("start", &O::start, "s", kNotNegative, "the elbow rests before it moves")
+          .number("duration", &O::duration, "s", kPositive, "of the movement")
+          .number("rate", &O::rate_Hz, "Hz", kPositive, "of samples where nothing is measured")
+          .check([](const StudyTable& t, O& o) {
+            const double samples = o.rate_Hz * (o.start + o.duration);
+            if (!(samples <= 1e6)) t.fail("rate", fmt::format("{:g} Hz makes more than a million samples", o.rate_Hz));
+            if (samples < 2.0) t.fail("rate", fmt::format("{:g} Hz leaves fewer than two samples", o.rate_Hz));
+          });
+  static const auto table =
+      KeyTable<TasksTable>("tasks", "What tasks share, and which of the 42 elbow tasks are among them.")
+          .with(&TasksTable::elbow, elbow)
+          .number("load", &TasksTable::load, "kg", kNotNegative, "in the hand; 0: none")
+          .otherwise("1 kg; 0 where the subject has loads")
+          .number("accuracy", &TasksTable::accuracy, "1", internal::kAccuracies,
+                  "of simulations; for recordings without noise 1e-7")
+          .number("reserve_force", &TasksTable::reserve_force, "N m", kNotNegative, "as in `[motion]`")
+          .table(
+              "control", [](TasksTable& t) -> ControlOptions& { return t.elbow.control; }, internal::control_keys());
+  return table;
+}
+
+const KeyTable<TaskTable>& TaskTable::keys() {
+  using O = TaskTable;
+  static const auto table =
+      KeyTable<O>("task", "A task of the study's own.")
+          .repeated()
+          .text("name", &O::name, "for messages and results")
+          .required()
+          .flag("hold_out", &O::hold_out, "keep it to validate on")
+          .number("duration", &O::duration, "s", kPositive, "how long it is")
+          .otherwise("to the end of its ramps, file or recording")
+          .file("file", &O::file, "the desired motion: `.mot`, `.sto` or `.csv`")
+          .number("low_pass", &O::low_pass_Hz, "Hz", kPositive, "cut-off of its samples, without delay")
+          .otherwise("none")
+          .elsewhere({"ramp", "", "", "", "tables `[[task.ramp]]`, as `[[motion.ramp]]`"})
+          .elsewhere({"held", "rad or m", "", "", "a table: `COORDINATE`s that are locked, and where"})
+          .elsewhere({"start", "rad or m", "", "the model's pose",
+                      "a table: `COORDINATE`s that neither move nor are held", true})
+          .elsewhere({"load", "", "", "", "tables `[[task.load]]`, as `[[subject.load]]`, besides those"})
+          .file("measured", &O::measured, "the recorded outputs: `.mot`, `.sto` or `.csv`")
+          .file("excitation_file", &O::excitation_file, "controls with which it was performed")
+          .otherwise("those with which the standard model follows the desired motion")
+          .choice("interpolation", &O::interpolation, internal::interpolations(), "as in `[motion]`")
+          .elsewhere({"angles", "", "a file", "", "with `[emg]`: columns by coordinate"})
+          .elsewhere({"moments", "", "a file", "", "with `[emg]`: outputs, such as `COORDINATE_moment`"})
+          .elsewhere({"emg", "", "a file", "", "with `[emg]`: envelopes within 0 .. 1, or in the unit of `maximum`"});
+  return table;
+}
+
 StudyTasks read_tasks(const StudyTable& root, const MuscleSubject& subject, std::span<const MuscleOutput> outputs,
                       const EmgSettings* emg) {
   StudyTasks out;
   const StudyTable table = root.table_or_empty("tasks");
-  const SharedSettings settings = read_shared(table, subject);
+  const TasksTable settings = read_shared(table, subject);
   out.accuracy = settings.accuracy;
   try {
     out.elbow = resolved(subject.system->model(), settings.elbow);
@@ -351,9 +390,10 @@ StudyTasks read_tasks(const StudyTable& root, const MuscleSubject& subject, std:
   out.tasks = std::move(elbow.tasks);
   out.notes = std::move(elbow.notes);
   for (const StudyTable& own : root.tables("task")) {
+    const TaskTable keys = TaskTable::keys().read(own);
     internal::ReadFromFiles<Task> read = is_recorded(own, emg != nullptr)
-                                             ? read_recorded_task(own, subject, settings.elbow, outputs, *emg)
-                                             : read_simulated_task(own, subject, settings, outputs);
+                                             ? read_recorded_task(own, keys, subject, settings.elbow, outputs, *emg)
+                                             : read_simulated_task(own, keys, subject, settings, outputs);
     for (const Task& other : out.tasks) {
       if (other.name == read.value.name) own.fail("name", fmt::format("= '{}' is another task's too", read.value.name));
     }

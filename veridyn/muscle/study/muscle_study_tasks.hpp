@@ -1,5 +1,7 @@
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,39 +26,31 @@ struct StudyTasks {
   std::string no_elbow;
 };
 
-/// Motions from which muscles are estimated:
-///
-///     [tasks]                        # what they share, and the 42 elbow tasks of the published method (`elbow_task`)
-///     numbers = [5, 12, 26, 33]      # of the 42; "all": those that the coordinates' ranges allow
-///     hold_out = [8, 30]             # further ones, for validation
-///     elbow = "r_elbow_flex"         # moves; when left out the only coordinate with "elbow" in its name
-///     shoulder = "r_shoulder_elev"   # is held; when left out the only one with "shoulder" in its name
-///     load = 1.0                     # in the hand [kg]; 0: none; when left out 1, or 0 where the subject has loads
-///     load_body = "r_ulna_radius_hand"  # when left out the body that the elbow moves
-///     load_location = [0, -0.31, 0.08]  # when left out twice as far as its mass centre: the end of a uniform rod
-///     start = 0.03                   # at rest before the movement [s]
-///     duration = 1                   # of the movement [s]
-///     rate = 100                     # of samples, where nothing is measured [Hz]
-///     accuracy = 1e-6                # of simulations
-///     reserve_force = 1              # as in [motion]
-///     [tasks.control]                # as [motion.control]
-///     window = 0.010
-///
-///     [[task]]                       # the study's own
-///     name = "curl"
-///     hold_out = false
-///     duration = 1.1                 # [s]; to the end of the ramps or of the file when left out
-///     file = "lift.mot"              # the desired motion; `low_pass` as in [motion]
-///     [[task.ramp]]                  # as [[motion.ramp]]
-///     coordinate = "r_elbow_flex"
-///     to = "110 deg"
-///     [task.held]                    # coordinates that are locked, and where
-///     r_shoulder_elev = "30 deg"
-///     [[task.load]]                  # as [[subject.load]], besides those
-///     [task.start]                   # pose of coordinates that neither move nor are held; the model's when left out
-///     measured = "trial.mot"         # the recorded outputs: .mot, .sto or .csv
-///     excitation_file = "controls.sto"  # the controls with which it was performed; `interpolation` as in [motion].
-///                                    # Without them: those with which the standard model follows the desired motion
+/// `[tasks]`: what the tasks share.
+struct TasksTable {
+  ElbowTaskOptions elbow;
+  std::optional<double> load;  ///< in the hand [kg]
+  double accuracy = StudyTasks{}.accuracy;
+  double reserve_force = 1.0;  ///< [N m or N]
+
+  [[nodiscard]] static const KeyTable<TasksTable>& keys();
+};
+
+/// `[[task]]` as it is written.
+struct TaskTable {
+  std::string name;
+  bool hold_out = false;
+  std::optional<double> duration;  ///< [s]
+  std::optional<std::filesystem::path> file;
+  std::optional<double> low_pass_Hz;  ///< of `file`
+  std::optional<std::filesystem::path> measured, excitation_file;
+  Interpolation interpolation = Interpolation::kLinear;
+
+  [[nodiscard]] static const KeyTable<TaskTable>& keys();
+};
+
+/// `[tasks]` and `[[task]]`: motions from which muscles are estimated, those that the study names of the 42 elbow tasks
+/// of the published method (`elbow_task`) and its own.
 ///
 /// With `emg`, of a study with `[emg]`, recorded tasks are those of `read_emg_recording`, with `held` and `start` for
 /// coordinates that their files do not have.

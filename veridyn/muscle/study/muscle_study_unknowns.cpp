@@ -17,12 +17,7 @@ Extent extent(const StudyTable& table, std::string_view key, std::string_view un
 }
 
 MuscleUnknown read_unknown(const StudyTable& table, const Model& model) {
-  MuscleUnknownSpec spec;
-  spec.name = table.text_or("name", "");
-  spec.muscles = table.texts("muscles");
-  spec.fields = table.texts("fields");
-  spec.factor = table.flag_or("factor", false);
-  spec.fixed = table.flag_or("fixed", false);
+  MuscleUnknownSpec spec = parameter_keys().read(table);
   // Names first, and the unit that the numbers below are in.
   std::string unit = "1";
   if (!spec.factor) {
@@ -62,6 +57,42 @@ MuscleUnknown read_unknown(const StudyTable& table, const Model& model) {
 
 }  // namespace
 
+const KeyTable<MuscleUnknownSpec>& parameter_keys() {
+  using S = MuscleUnknownSpec;
+  static const auto table =
+      KeyTable<S>("parameter", "An unknown: one number that one or several parameters of muscles follow.")
+          .repeated()
+          .text("name", &S::name, "for messages and results")
+          .otherwise("`MUSCLE.FIELD`")
+          .texts("muscles", &S::muscles, "whose; `[\"all\"]`: every muscle's")
+          .required()
+          .texts("fields", &S::fields,
+                 "of `[subject.parameters]`, or `tendon_strain_factor`, `excitation_gain`, `excitation_delay`")
+          .required()
+          .flag("factor", &S::factor, "it multiplies the model's values; else it is the value of all")
+          .elsewhere({"start", "the field's", "", "the model's value, or 1", "where it begins", true})
+          .elsewhere({"bounds", "%", "", "50 %", "below and above the start", true})
+          .elsewhere(
+              {"low", "% or the field's", "", "of `bounds`", "instead: in percent from the start, or a value", true})
+          .elsewhere({"high", "% or the field's", "", "of `bounds`", "the same", true})
+          .elsewhere({"prior", "% or the field's", "", "of a value within the bounds",
+                      "standard deviation of what is known before", true})
+          .flag("fixed", &S::fixed, "it stays at its start");
+  return table;
+}
+
+const KeyTable<MuscleOutput>& output_keys() {
+  static const auto table =
+      KeyTable<MuscleOutput>("output", "What is compared with the recordings.")
+          .repeated()
+          .elsewhere({"name", "", "", "",
+                      "`COORDINATE`, `COORDINATE.speed`, `COORDINATE.moment` (of the muscles), `MUSCLE.fiber_length`, "
+                      "`MUSCLE.tendon_force`"})
+          .required()
+          .elsewhere({"noise", "the output's", "> 0", "estimated", "standard deviation of its measurement", true});
+  return table;
+}
+
 std::vector<MuscleUnknown> read_unknowns(const StudyTable& root, const Model& model) {
   std::vector<MuscleUnknown> unknowns;
   for (const StudyTable& table : root.tables("parameter")) {
@@ -74,6 +105,7 @@ std::vector<MuscleUnknown> read_unknowns(const StudyTable& root, const Model& mo
 std::vector<MuscleOutput> read_outputs(const StudyTable& root, const Model& model) {
   std::vector<MuscleOutput> outputs;
   for (const StudyTable& table : root.tables("output")) {
+    static_cast<void>(output_keys().read(table));
     MuscleOutput output = parse_output(model, table.text("name"), table.place("name"));
     if (table.has("noise")) output.noise_sd = table.positive("noise", output_unit(model, output));
     for (const MuscleOutput& other : outputs) {

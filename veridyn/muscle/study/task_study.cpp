@@ -52,12 +52,9 @@ std::vector<MuscleOutput> default_outputs(const MusculoskeletalSystem& system, b
 }
 
 /// `[[parameter]]`, or the default ones within `identify.bounds`.
-std::vector<MuscleUnknown> unknowns_of(const StudyTable& root, const Model& model,
+std::vector<MuscleUnknown> unknowns_of(const StudyTable& root, double bounds, const Model& model,
                                        const std::optional<EmgSettings>& emg) {
   const StudyTable identify = root.table_or_empty("identify");
-  const double bounds = identify.positive_or("bounds", "1", 0.2);
-  if (bounds >= 1.0)
-    identify.fail("bounds", fmt::format("{:g} must be below 1: a muscle's parameters are positive", bounds));
   std::vector<MuscleUnknown> unknowns = read_unknowns(root, model);
   if (emg && identify.has("bounds")) identify.fail("bounds", "is not for [emg]: write [[parameter]] with bounds");
   if (unknowns.empty()) return default_unknowns(model, emg, 100.0 * bounds);
@@ -109,27 +106,10 @@ std::shared_ptr<const MusculoskeletalSystem> read_body(const StudyTable& table, 
 }
 
 SimulatedPerson read_person(const StudyTable& table, const TaskStudy& study) {
-  SimulatedPerson person;
-  person.spread = table.number_or("spread", "1", person.spread);
-  if (!(person.spread >= 0.0 && person.spread < 1.0))
-    table.fail("spread", fmt::format("{:g} must be from 0 to below 1", person.spread));
-  person.noise = table.number_or("noise", "rad", person.noise);
-  if (!(person.noise >= 0.0)) table.fail("noise", fmt::format("{:g} must be >= 0", person.noise));
-  person.noise_correlation_s = table.number_or("noise_correlation", "s", person.noise_correlation_s);
-  if (!(person.noise_correlation_s >= 0.0))
-    table.fail("noise_correlation", fmt::format("{:g} must be >= 0", person.noise_correlation_s));
-  constexpr internal::Words<bool, 2> kMuscles{{{"as the model", false}, {"millard", true}}};
-  person.millard = internal::word_or_first(table, "muscles", kMuscles);
+  SimulatedPerson person = SimulatedPerson::keys().read(table);
   if (table.has("model")) person.body = read_body(table, study);
-  person.load_factor = table.positive_or("load_factor", "1", person.load_factor);
-  if (study.emg) {
-    person.moment_noise = table.number_or("moment_noise", "N m", person.moment_noise);
-    if (!(person.moment_noise >= 0.0))
-      table.fail("moment_noise", fmt::format("{:g} must be >= 0", person.moment_noise));
-    person.emg_noise = table.optional_number("emg_noise", "1");
-    if (person.emg_noise && !(*person.emg_noise >= 0.0 && *person.emg_noise < 1.0))
-      table.fail("emg_noise", fmt::format("{:g} must be from 0 to below 1", *person.emg_noise));
-  }
+  for (const char* key : {"moment_noise", "emg_noise"})
+    if (!study.emg && table.has(key)) table.fail(key, "needs [emg]");
   const StudyTable values = table.table_or_empty("parameters");
   std::vector<std::string> names;
   for (const MuscleUnknown& u : study.unknowns) names.push_back(u.name);
@@ -159,16 +139,14 @@ std::vector<std::string> free_unknowns(const std::vector<MuscleUnknown>& unknown
 }
 
 /// `route`; nothing where it is the gradient's.
-std::optional<PublishedRouteOptions> read_route(const StudyTable& table, const TaskStudy& study) {
-  const std::vector<std::string> routes = {"gradient", "published"};
-  if (table.choice_or("route", routes, "gradient") != "published") return std::nullopt;
+std::optional<PublishedRouteOptions> read_route(const StudyTable& table, const MuscleIdentifyTable& keys,
+                                                const TaskStudy& study) {
+  if (!keys.published) return std::nullopt;
   if (study.emg) table.fail("route", "= \"published\" simulates tasks forward; with [emg] it is \"gradient\"");
-  PublishedRouteOptions route{.tolerance = table.positive_or("tolerance", "1", 0.01)};
+  PublishedRouteOptions route{.tolerance = keys.tolerance};
   route.swarm.seed = route.pattern.seed = study.seed;
-  const long long most = table.integer_or("evaluations", 20000);
-  if (most < 1) table.fail("evaluations", fmt::format("= {} must be at least 1", most));
-  route.evaluation.max_evaluations = static_cast<std::size_t>(most);
-  if (table.has("log")) route.evaluation.log = table.file("log");
+  route.evaluation.max_evaluations = keys.evaluations;
+  route.evaluation.log = keys.log;
   if (study.estimate_start)
     table.fail("route",
                "= \"published\" does not find where motions begin: estimate_start = false, or the gradient route");
@@ -180,12 +158,7 @@ std::optional<estimation::EnsembleOptions> read_posterior(const StudyTable& tabl
   estimation::EnsembleOptions options{.seed = study.seed};
   if (!table.is_table("posterior")) return table.flag_or("posterior", false) ? std::optional(options) : std::nullopt;
   const StudyTable t = table.table("posterior");
-  const auto count = [&](const char* key, std::size_t otherwise) {
-    return static_cast<std::size_t>(std::max(0LL, t.integer_or(key, static_cast<long long>(otherwise))));
-  };
-  options.walkers = count("walkers", options.walkers);
-  options.steps = count("steps", options.steps);
-  options.effective = count("effective", options.effective);
+  posterior_keys().read(t, options);
   try {
     options.validate(static_cast<std::size_t>(
         std::count_if(study.unknowns.begin(), study.unknowns.end(), [](const MuscleUnknown& u) { return !u.fixed; })));
@@ -196,34 +169,18 @@ std::optional<estimation::EnsembleOptions> read_posterior(const StudyTable& tabl
   return options;
 }
 
-/// `starts`, `screened`.
-TaskEstimateOptions read_search(const StudyTable& table, std::uint64_t seed) {
-  TaskEstimateOptions search;
-  search.starts = static_cast<int>(std::clamp(table.integer_or("starts", search.starts), 0LL, 1000000LL));
-  search.screened = static_cast<int>(
-      std::clamp(table.integer_or("screened", std::max(search.screened, search.starts)), 0LL, 1000000LL));
-  try {
-    search.validate();
-  } catch (const InputError& error) {
-    const std::string what = error.what();
-    table.fail(what.starts_with("identify.starts") ? "starts" : "screened",
-               what.substr(std::min(what.size(), error.place().size() + 2)));
-  }
-  search.seed = seed;
-  return search;
-}
-
-bool read_estimate_start(const StudyTable& table, const TaskStudy& study) {
-  const bool estimate = table.flag_or("estimate_start", !study.person && !study.emg);
+bool read_estimate_start(const StudyTable& table, const MuscleIdentifyTable& keys, const TaskStudy& study) {
+  const bool estimate = keys.estimate_start.value_or(!study.person && !study.emg);
   if (estimate && study.emg)
     table.fail("estimate_start", "has no meaning with [emg]: the angles are those of the recording from the beginning");
   return estimate;
 }
 
 /// @param no_elbow why the model has no elbow tasks
-bool read_advice(const StudyTable& table, const TaskStudy& study, const std::string& no_elbow) {
+bool read_advice(const StudyTable& table, const MuscleIdentifyTable& keys, const TaskStudy& study,
+                 const std::string& no_elbow) {
   const bool recorded = std::any_of(study.tasks.begin(), study.tasks.end(), [](const Task& t) { return !!t.controls; });
-  const bool advice = table.flag_or("advice", study.elbow && !recorded && !study.emg);
+  const bool advice = keys.advice.value_or(study.elbow && !recorded && !study.emg);
   if (advice && study.emg)
     table.fail("advice", "has no meaning with [emg]: the EMG of a task that was not performed is not known");
   if (advice && !study.elbow) table.fail("advice", fmt::format("needs the elbow tasks: {}", no_elbow));
@@ -242,6 +199,78 @@ void check_emg_outputs(const StudyTable& root, const Model& model, const std::ve
 
 }  // namespace
 
+const KeyTable<SimulatedPerson>& SimulatedPerson::keys() {
+  using P = SimulatedPerson;
+  static const auto table =
+      KeyTable<P>("person", "A simulated person in place of recordings, to see what the tasks would determine.")
+          .number("spread", &P::spread, "1", internal::kBelowOne,
+                  "hidden parameters are within so much of the model's, uniform, by the seed")
+          .elsewhere({"parameters", "", "", "none", "a table: hidden values of single unknowns by their names", true})
+          .number("noise", &P::noise, "rad", kNotNegative,
+                  "of measured angles (positions: m); of other outputs that of `[[output]]`")
+          .number("noise_correlation", &P::noise_correlation_s, "s", kNotNegative,
+                  "correlation time of that noise, of first order; 0: white")
+          .number("moment_noise", &P::moment_noise, "N m", kNotNegative,
+                  "with `[emg]`: of measured moments of which `[[output]]` says no other")
+          .number("emg_noise", &P::emg_noise, "1", internal::kBelowOne, "with `[emg]`: of the EMG over its value")
+          .otherwise("as `emg.noise`")
+          .choice("muscles", &P::millard, {{"as the model", false}, {"millard", true}},
+                  "of another class than the model's, to see what is said of a wrong model")
+          .elsewhere({"model", "", "a file", "the subject's",
+                      "bodies, joints and paths of another model with the same coordinates and muscles, likewise",
+                      true})
+          .number("load_factor", &P::load_factor, "1", kPositive, "true loads over the stated ones, likewise");
+  return table;
+}
+
+const KeyTable<MuscleIdentifyTable>& MuscleIdentifyTable::keys() {
+  using O = MuscleIdentifyTable;
+  static const auto search =
+      KeyTable<TaskEstimateOptions>("identify")
+          .count("starts", &TaskEstimateOptions::starts, 1, 1000, "searches")
+          .count("screened", &TaskEstimateOptions::screened, 1, 100000,
+                 "points whose fit is looked at to choose where they begin; at least `starts`")
+          .check([](const StudyTable& t, TaskEstimateOptions& o) {
+            if (!t.has("screened")) o.screened = std::max(o.screened, o.starts);
+            if (o.screened < o.starts)
+              t.fail("screened", fmt::format("= {} must be from starts = {} to 100000", o.screened, o.starts));
+          });
+  static const auto table =
+      KeyTable<O>("identify", "How muscles are estimated from tasks.")
+          .number("bounds", &O::bounds, "1", between(0.0, 1.0),
+                  "of the unknowns, below and above the model's values, where the study has no `[[parameter]]`")
+          .with(&O::search, search)
+          .flag("estimate_start", &O::estimate_start, "pose and speed where each task begins are unknown too")
+          .otherwise("`true` with recordings that are simulated forward")
+          .flag("advice", &O::advice, "say which further elbow task would narrow the widest interval most")
+          .otherwise("`true`; `false` where controls or EMG are recorded")
+          .elsewhere({"profiles", "", "names, `true`, `false`", "false",
+                      "parameters whose profile likelihood is followed; `true`: all that are not fixed"})
+          .elsewhere({"posterior", "", "`true`, `false`, a table", "false", "draw samples of the posterior"})
+          .choice("route", &O::published, {{"gradient", false}, {"published", true}},
+                  "`gradient`: least squares with exact sensitivities; `published`: particle swarms, then pattern "
+                  "search, by values only")
+          .number("tolerance", &O::tolerance, "1", kPositive, "published: greatest NRMSE of a task")
+          .count("evaluations", &O::evaluations, 1, 1'000'000'000, "published: at most, each of all tasks")
+          .file("log", &O::log, "published: keeps every evaluation; a log that is there is continued")
+          .check([](const StudyTable& t, O& o) {
+            for (const char* key : {"tolerance", "evaluations", "log"})
+              if (!o.published && t.has(key)) t.fail(key, "needs route = \"published\"");
+          });
+  return table;
+}
+
+const KeyTable<estimation::EnsembleOptions>& posterior_keys() {
+  using O = estimation::EnsembleOptions;
+  static const auto table =
+      KeyTable<O>("identify.posterior")
+          .count("walkers", &O::walkers, 6, 1'000'000, "of the ensemble; even, at least twice the unknowns")
+          .otherwise("32, or twice the unknowns and two")
+          .count("steps", &O::steps, 20, 10'000'000, "of every walker, at most")
+          .count("effective", &O::effective, 1, 1'000'000'000, "independent draws wanted of each parameter");
+  return table;
+}
+
 bool has_tasks(const StudyTable& root) {
   const std::vector<std::string> keys = root.keys();
   return std::any_of(keys.begin(), keys.end(), [](const std::string& k) { return k == "task" || k == "tasks"; });
@@ -255,10 +284,12 @@ TaskStudy read_task_study(const Study& source, Progress& progress) {
     root.fail("tasks", "is missing: muscles are estimated from tasks; `veridyn simulate` runs a [motion]");
   study.subject = internal::read_subject(root, progress);
   const MusculoskeletalSystem& system = *study.subject.system;
+  const StudyTable identify = root.table_or_empty("identify");
+  const MuscleIdentifyTable keys = MuscleIdentifyTable::keys().read(identify);
   if (system.path_source() == PathSource::kAsOpenSim)
     root.table("subject").fail("paths", "= \"opensim\" has no derivatives; take \"exact\" or \"fitted\"");
   if (root.is_table("emg")) study.emg = read_emg(root.table("emg"), system.model());
-  study.unknowns = with_bound_priors(unknowns_of(root, system.model(), study.emg));
+  study.unknowns = with_bound_priors(unknowns_of(root, keys.bounds, system.model(), study.emg));
   if (std::all_of(study.unknowns.begin(), study.unknowns.end(), [](const MuscleUnknown& u) { return u.fixed; }))
     root.fail("parameter", "leaves nothing to estimate: all are fixed");
   study.outputs = read_outputs(root, system.model());
@@ -292,13 +323,13 @@ TaskStudy read_task_study(const Study& source, Progress& progress) {
       root.fail("task", fmt::format("'{}' has no recording ({}), and there is no [person] to simulate one", task.name,
                                     study.emg ? "angles, moments and emg" : "measured = \"trial.mot\""));
   }
-  const StudyTable identify = root.table_or_empty("identify");
-  study.search = read_search(identify, study.seed);
-  study.estimate_start = read_estimate_start(identify, study);
+  study.search = keys.search;
+  study.search.seed = study.seed;
+  study.estimate_start = read_estimate_start(identify, keys, study);
   study.profiles = estimation::read_profiles(identify, free_unknowns(study.unknowns));
   study.posterior = read_posterior(identify, study);
-  study.advice = read_advice(identify, study, tasks.no_elbow);
-  study.published = read_route(identify, study);
+  study.advice = read_advice(identify, keys, study, tasks.no_elbow);
+  study.published = read_route(identify, keys, study);
   for (const char* other : {"motion", "sensitivity"})
     if (root.is_table(other)) root.accept(other);
   root.finish();

@@ -31,7 +31,24 @@ struct SimulatedPerson {
   double noise_correlation_s = 0.0;   ///< of that noise, first order: exp(-dt/this) from sample to sample; 0: white
   double moment_noise = 0.1;          ///< of measured moments and forces that `[[output]]` says no other of [N m or N]
   std::optional<double> emg_noise{};  ///< of the EMG's value; else as the study's `[emg]` says
+
+  [[nodiscard]] static const KeyTable<SimulatedPerson>& keys();
 };
+
+/// `[identify]` of a muscle study as it is written.
+struct MuscleIdentifyTable {
+  bool published = false;  ///< the route
+  double tolerance = PublishedRouteOptions{}.tolerance;
+  std::size_t evaluations = 20000;
+  std::filesystem::path log;
+  double bounds = 0.2;
+  TaskEstimateOptions search;
+  std::optional<bool> advice, estimate_start;
+
+  [[nodiscard]] static const KeyTable<MuscleIdentifyTable>& keys();
+};
+/// `[identify.posterior]`.
+[[nodiscard]] const KeyTable<estimation::EnsembleOptions>& posterior_keys();
 
 /// A study that estimates a person's muscles from tasks, read and checked.
 struct TaskStudy {
@@ -58,36 +75,7 @@ struct TaskStudy {
 [[nodiscard]] bool has_tasks(const StudyTable& root);
 
 /// Reads a study: `[subject]` as `read_study`, `[emg]` as `read_emg`, `[tasks]` and `[[task]]` as `read_tasks`,
-/// `[[parameter]]` and
-/// `[[output]]` as `read_unknowns` and `read_outputs`, and
-///
-///     seed = 1
-///     [person]                       # simulated: its motions are what a recording would be
-///     spread = "5 %"                 # hidden parameters, within so much of the model's; drawn by the seed
-///     noise = "0.06 deg"             # of the measured angles; of other outputs that of [[output]]
-///     noise_correlation = "20 ms"    # correlation time of that noise, first order; 0: white
-///     muscles = "millard"            # of another class than the model's, to see what is said of a wrong model
-///     model = "turned.osim"          # with the bodies, joints and paths of another model, likewise
-///     load_factor = 1.0              # true load over the stated one, likewise
-///     moment_noise = "0.1 N m"       # with [emg]: of the measured moments, unless [[output]] says it
-///     emg_noise = "20 %"             # with [emg]: of the EMG, where the study says otherwise in [emg]
-///     [person.parameters]            # hidden values of single unknowns, by the unknown's name
-///     "BRA.max_isometric_force" = 1000
-///     [identify]
-///     route = "gradient"             # least squares with exact sensitivities; "published": particle swarm until every
-///                                    # task holds the tolerance, then pattern search, values only
-///     tolerance = "1 %"              # published: greatest NRMSE of a task
-///     evaluations = 20000            # published: at most, each of all tasks
-///     log = "search.csv"             # published: every evaluation; a log that is there is continued
-///     bounds = "20 %"                # of the unknowns where the study has no [[parameter]]
-///     starts = 3                     # gradient: searches
-///     screened = 16                  # points whose fit is looked at to choose where they begin
-///     advice = true                  # which further elbow task would lessen the widest interval most; false when left
-///                                    # out where controls are recorded: those of a task to come are not known
-///     profiles = ["BRA.tendon_slack_length"]  # profile likelihood of these; true: of all that are not fixed
-///     posterior = true               # draws of the posterior by an ensemble of walkers; or a table with its options:
-///     # posterior = { walkers = 40, steps = 4000, effective = 1000 }
-///     estimate_start = true          # pose and speed at the beginning too; true when left out with recordings
+/// `[[parameter]]` and `[[output]]` as `read_unknowns` and `read_outputs`, `[person]` and `[identify]`.
 ///
 /// Without `[[parameter]]`: max_isometric_force, optimal_fiber_length and tendon_slack_length of every muscle; with
 /// `[emg]` excitation_gain of every muscle, within 50 %. Without `[[output]]`: the values of all coordinates that move

@@ -153,7 +153,7 @@ Table workspace_table(const CueingStudy& study, const CueingResult& result) {
   Table t{.title = "What the platform used",
           .caption =
               "Range: share of it on the side that was used most. Held back: share of time in which the guard kept "
-              "the axis from what the algorithm wanted. Rate: the largest, over what is allowed. Jerk in the "
+              "the axis from the command of the algorithm. Rate: the largest, over what is allowed. Jerk in the "
               "axis's unit over s^3."};
   t.columns = {{.name = "axis", .align = Align::kLeft}, {.name = "algorithm", .align = Align::kLeft},
                {.name = "lowest", .digits = 3},         {.name = "highest", .digits = 3},
@@ -204,7 +204,7 @@ Table false_cue_counts(const CueingResult& result) {
               "Stretches of a tenth of a second and more, of all cues together. Wrong sign: felt the other way, above "
               "threshold. Too strong: more than twice. Missing: not felt, where more than twice the threshold was "
               "felt in the vehicle. Turns felt at rest: share of the time in which the driver felt neither force nor "
-              "turn, and the platform, on its way home, turned above threshold."};
+              "turn, and the platform, on its way back to neutral, turned above threshold."};
   t.columns = {{.name = "algorithm", .align = Align::kLeft},
                {.name = "wrong sign"},
                {.name = "too strong"},
