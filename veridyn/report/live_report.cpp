@@ -79,9 +79,9 @@ Section packets_section(const LiveReplay& run) {
   t.columns = {{.name = "packets", .align = Align::kLeft}};
   for (const PacketIntake::FromSender& s : run.senders) t.columns.push_back({.name = to_string(s.sender)});
   t.sortable = false;
-  for (std::size_t i = 0; i < kPacketFates; ++i) {
+  for (std::size_t i = 0; i < kPacketStatuss; ++i) {
     if (run.packets[i] == 0 && i > 0) continue;
-    Row row{.cells = {text_cell(std::string(name_of(static_cast<PacketFate>(i))))}};
+    Row row{.cells = {text_cell(std::string(name_of(static_cast<PacketStatus>(i))))}};
     for (const PacketIntake::FromSender& s : run.senders)
       row.cells.push_back(number_cell(static_cast<double>(s.counts[i]), 0));
     t.rows.push_back(std::move(row));
@@ -98,10 +98,10 @@ Section states_section(const LiveReplay& run) {
                {.name = "state", .align = Align::kLeft},
                {.name = "telemetry and platform", .align = Align::kLeft}};
   t.sortable = false;
-  constexpr std::size_t kMost = 200;
+  constexpr std::size_t kRowsShown = 200;
   for (const LiveReplay::Change& c : run.changes) {
-    if (t.rows.size() == kMost) {
-      t.caption = fmt::format("The first {} of {}.", kMost, run.changes.size());
+    if (t.rows.size() == kRowsShown) {
+      t.caption = fmt::format("The first {} of {}.", kRowsShown, run.changes.size());
       break;
     }
     t.rows.push_back({.cells = {number_cell(c.time, 2), text_cell(std::string(name_of(c.to))),
