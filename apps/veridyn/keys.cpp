@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "apps/veridyn/run/console.hpp"
+#include "veridyn/aircraft/aircraft_keys.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/core/study_keys.hpp"
@@ -15,7 +16,10 @@ namespace veridyn::app {
 namespace {
 
 /// What studies are about, as `veridyn init` calls it.
-const std::pair<std::string, std::vector<StudyKeys> (*)()> kKinds[] = {{"vehicle", vehicle::study_keys}};
+const std::pair<std::string, std::vector<StudyKeys> (*)()> kKinds[] = {{"vehicle", vehicle::study_keys},
+                                                                       {"aircraft", aircraft::study_keys},
+                                                                       {"swing-test", aircraft::swing_test_keys},
+                                                                       {"calibration", aircraft::calibration_keys}};
 
 std::vector<StudyKeys> keys_of(const std::string& kind) {
   std::vector<std::string> names;

@@ -56,7 +56,11 @@ struct StudyKeys {
   std::string table;  ///< "segments", "identify.uncertainty"
   std::string about;  ///< one sentence; empty where the keys say it
   std::vector<StudyKey> keys;
+  bool many = false;  ///< an array of tables, `[[table]]`
 };
+
+/// "[segments]", "[[data.run]]".
+[[nodiscard]] std::string heading_of(const StudyKeys& table);
 
 /// The keys of tables as Markdown, one table each: key, unit, default, range, meaning.
 [[nodiscard]] std::string in_markdown(const StudyKeys& keys);
@@ -83,11 +87,14 @@ namespace internal {
 [[nodiscard]] std::vector<double> numbers_in(const StudyTable& table, const std::string& name, const std::string& unit,
                                              const KeyRange& range, std::size_t size);
 [[nodiscard]] long long integer_in(const StudyTable& table, const std::string& name, long long least, long long most);
+/// Where the texts of a list are among `names`. @throws InputError for one that is not
+[[nodiscard]] std::vector<std::size_t> chosen_in(const StudyTable& table, const std::string& name,
+                                                 const std::vector<std::string>& names);
+
+}  // namespace internal
 
 /// @throws InputError naming all of them, where there are any
 void refuse_missing(const StudyTable& table, const std::vector<std::string>& keys);
-
-}  // namespace internal
 
 /// The names of an enumeration with what they stand for, after those in `before`: values of a KeyTable::choice.
 template <typename V, typename E, std::size_t N>
@@ -209,6 +216,16 @@ class KeyTable {
         });
   }
 
+  /// Several paths; one counts as a list of one.
+  template <typename Field>
+  KeyTable& files(std::string name, Field field, std::string says) {
+    return add(
+        {std::move(name), {}, "files", {}, std::move(says)}, [](T&) { return std::string(); },
+        [field](const StudyTable& table, const std::string& key, T& object) {
+          std::invoke(field, object) = table.files(key);
+        });
+  }
+
   /// One of several names, each of which stands for a value of the field.
   template <typename Field>
   KeyTable& choice(std::string name, Field field,
@@ -226,6 +243,47 @@ class KeyTable {
           const std::string chosen = table.choice_or(key, names, "");
           for (const auto& [text, value] : values)
             if (text == chosen) std::invoke(field, object) = value;
+        });
+  }
+
+  /// A list of such names, of which the field has the values in the order of the study.
+  template <typename Field>
+  KeyTable& choices(std::string name, Field field,
+                    std::vector<std::pair<std::string, typename ValueOf<Field>::value_type>> values, std::string says) {
+    std::vector<std::string> names;
+    for (const auto& [text, value] : values) names.push_back(text);
+    return add(
+        {std::move(name), {}, "a list of " + quoted_list(names, "`"), {}, std::move(says)},
+        [field, values](T& object) {
+          std::vector<std::string> now;
+          for (const auto& one : std::invoke(field, object))
+            for (const auto& [text, value] : values)
+              if (value == one) now.push_back(text);
+          return '[' + quoted_list(now) + ']';
+        },
+        [field, names, values](const StudyTable& table, const std::string& key, T& object) {
+          std::invoke(field, object).clear();
+          for (const std::size_t i : internal::chosen_in(table, key, names))
+            std::invoke(field, object).push_back(values[i].second);
+        });
+  }
+
+  /// A list of names, each of which makes a flag `value`.
+  KeyTable& flags(std::string name, std::vector<std::pair<std::string, bool T::*>> flags, bool value,
+                  std::string says) {
+    std::vector<std::string> names;
+    for (const auto& [text, member] : flags) names.push_back(text);
+    return add(
+        {std::move(name), {}, "a list of " + quoted_list(names, "`"), {}, std::move(says)},
+        [flags, value](T& object) {
+          std::vector<std::string> now;
+          for (const auto& [text, member] : flags)
+            if (object.*member == value) now.push_back(text);
+          return '[' + quoted_list(now) + ']';
+        },
+        [flags, names, value](const StudyTable& table, const std::string& key, T& object) {
+          for (const auto& [text, member] : flags) object.*member = !value;
+          for (const std::size_t i : internal::chosen_in(table, key, names)) object.*flags[i].second = value;
         });
   }
 
@@ -251,6 +309,10 @@ class KeyTable {
                             take(table, key, std::invoke(field, object));
                           },
                           entry.old_name, entry.required});
+    for (const auto& inner : part.within_)
+      within_.push_back({inner.describe, [field, take = inner.take](const StudyTable& table, T& object) {
+                           take(table, std::invoke(field, object));
+                         }});
     for (const auto& rule : part.checks_)
       checks_.push_back([field, rule](const StudyTable& table, T& object) { rule(table, std::invoke(field, object)); });
     return *this;
@@ -258,14 +320,41 @@ class KeyTable {
   /// A table within, `[table.name]`, with keys of its own.
   template <typename Field, typename Part>
   KeyTable& table(const std::string& name, Field field, const KeyTable<Part>& part) {
-    within_.push_back({[part, path = table_ + '.' + name](std::vector<StudyKeys>& all) {
-                         std::vector<StudyKeys> more = part.described();
-                         more.front().table = path;
-                         all.insert(all.end(), more.begin(), more.end());
+    return within(name, part, [part, field, name](const StudyTable& outer, T& object) {
+      part.read(outer.table_or_empty(name), std::invoke(field, object));
+    });
+  }
+  /// The same where it is the field's value as a whole: what it leaves out has its default, whatever the field had.
+  template <typename Field, typename Part>
+  KeyTable& whole_table(const std::string& name, Field field, const KeyTable<Part>& part) {
+    return within(name, part, [part, field, name](const StudyTable& outer, T& object) {
+      if (outer.has(name)) std::invoke(field, object) = part.read(outer.table(name));
+    });
+  }
+  /// An array of tables within, `[[table.name]]`; `take` is called for each.
+  template <typename Part>
+  KeyTable& tables(const std::string& name, const KeyTable<Part>& part,
+                   std::function<void(const StudyTable&, T&)> take) {
+    return within(
+        name, part,
+        [name, take = std::move(take)](const StudyTable& outer, T& object) {
+          for (const StudyTable& one : outer.tables(name)) take(one, object);
+        },
+        true);
+  }
+  /// A table within that is read by hand: `take` gets this table and the object.
+  template <typename Part>
+  KeyTable& within(const std::string& name, const KeyTable<Part>& part, std::function<void(const StudyTable&, T&)> take,
+                   bool many = false) {
+    within_.push_back({[part, path = table_.empty() ? name : table_ + '.' + name, many](std::vector<StudyKeys>& all) {
+                         for (StudyKeys& keys : part.described()) {
+                           if (keys.keys.empty()) continue;
+                           keys.table = path + keys.table.substr(part.table_.size());
+                           keys.many = keys.many || (many && keys.table == path);
+                           all.push_back(std::move(keys));
+                         }
                        },
-                       [part, field, name](const StudyTable& outer, T& object) {
-                         part.read(outer.table_or_empty(name), std::invoke(field, object));
-                       }});
+                       std::move(take)});
     return *this;
   }
 
@@ -305,7 +394,7 @@ class KeyTable {
         missing.push_back(name);
     }
     for (const Within& within : within_) within.take(table, object);
-    internal::refuse_missing(table, missing);
+    refuse_missing(table, missing);
     for (const auto& rule : checks_) rule(table, object);
   }
   [[nodiscard]] T read(const StudyTable& table) const {
