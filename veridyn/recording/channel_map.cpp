@@ -57,7 +57,6 @@ void check_entry(const StudyTable& table, MapEntry& entry) {
     if (!source.empty()) table.fail(key, fmt::format("and {} exclude each other", source));
     source = key;
   }
-  if (source.empty()) table.fail("channel", "is missing: give channel, channels or switch");
   if (source != "channels" && table.has("weights")) table.fail("weights", "are of several channels");
   if ((source == "switch") != table.has("cases"))
     table.fail("cases", source == "switch" ? "are missing: which channel it selects" : "are of a switch");
@@ -187,6 +186,7 @@ MappedValues map_from_study(const Recording& log, const StudyTable& map, const S
   } else if (!entry.channels.empty()) {
     out = weighted_sum(log, table, entry, target);
   } else {
+    if (entry.channel.empty()) table.fail("channel", "is missing: give channel, channels or switch");
     out.from = entry.channel;
     const Channel& raw = source_of(log, table, "channel", out.from);
     check_dimension(table, "channel", raw, entry.unit, target);

@@ -158,7 +158,7 @@ TEST(IndexInputs, AreRefusedInOneLine) {
   EXPECT_THAT(input_refusal(input + "parameter = \"mass\"\nlow = 3"), HasSubstr("a range has two ends"));
   EXPECT_THAT(input_refusal(input + "parameter = \"mass\"\nlow = 3\nhigh = 4\nrange = 0.1"), HasSubstr("exclude"));
   EXPECT_THAT(input_refusal(input + "parameter = \"mass\"\nrange = 5"),
-              HasSubstr("sensitivity.input.range: = 5 must be between 0 and 1"));
+              HasSubstr("range: = 5 must be between 0 and 1"));
   EXPECT_THAT(input_refusal(input + "parameter = \"K_b\""), HasSubstr("K_b is 0"));
   EXPECT_THAT(input_refusal(input + "parameter = \"mass\"\n" + input + "parameter = \"mass\""), HasSubstr("twice"));
   EXPECT_THAT(input_refusal(input + "range = 0.1"), HasSubstr("parameter"));
