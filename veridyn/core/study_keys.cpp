@@ -89,6 +89,12 @@ std::string quoted_list(const std::vector<std::string>& texts, std::string_view 
   return all;
 }
 
+void refuse_missing(const StudyTable& table, const std::vector<std::string>& keys) {
+  if (keys.empty()) return;
+  if (keys.size() == 1) table.fail(keys.front(), "is missing");
+  throw InputError(table.place(""), fmt::format("{} are missing", fmt::join(keys, ", ")));
+}
+
 namespace internal {
 namespace {
 
@@ -161,11 +167,4 @@ std::vector<std::size_t> chosen_in(const StudyTable& table, const std::string& n
 }
 
 }  // namespace internal
-
-void refuse_missing(const StudyTable& table, const std::vector<std::string>& keys) {
-  if (keys.empty()) return;
-  if (keys.size() == 1) table.fail(keys.front(), "is missing");
-  throw InputError(table.place(""), fmt::format("{} are missing", fmt::join(keys, ", ")));
-}
-
 }  // namespace veridyn

@@ -76,6 +76,10 @@ struct StudyKeys {
 /// `"a", "b"`, each with `mark` around it.
 [[nodiscard]] std::string quoted_list(const std::vector<std::string>& texts, std::string_view mark = {});
 
+/// Keys that a table must have and has not.
+/// @throws InputError naming all of them, where there are any
+void refuse_missing(const StudyTable& table, const std::vector<std::string>& keys);
+
 namespace internal {
 
 [[nodiscard]] std::string shown(double si, std::string_view unit);
@@ -92,9 +96,6 @@ namespace internal {
                                                  const std::vector<std::string>& names);
 
 }  // namespace internal
-
-/// @throws InputError naming all of them, where there are any
-void refuse_missing(const StudyTable& table, const std::vector<std::string>& keys);
 
 /// The names of an enumeration with what they stand for, after those in `before`: values of a KeyTable::choice.
 template <typename V, typename E, std::size_t N>
