@@ -3,6 +3,7 @@
 //   node tools/printed_in_docs.mjs --check|--write PROGRAM
 import { execFileSync } from 'node:child_process';
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { wrapped } from './markdown_lines.mjs';
 
 const [mode, program] = process.argv.slice(2);
 if ((mode !== '--check' && mode !== '--write') || !program) {
@@ -20,7 +21,7 @@ for (const name of readdirSync(docs).filter((file) => file.endsWith('.md'))) {
   let here = 0;
   const wanted = text.replace(printed, (_, begin, command, end) => {
     here += 1;
-    return `${begin}\n${execFileSync(program, command.split(' '), { encoding: 'utf8' })}\n${end}`;
+    return `${begin}\n${wrapped(execFileSync(program, command.split(' '), { encoding: 'utf8' }))}\n${end}`;
   });
   if (here !== (text.match(begins) ?? []).length) {
     console.error(`docs/${name}: a stretch of printed tables has no end`);

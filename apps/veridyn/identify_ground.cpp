@@ -11,6 +11,7 @@
 #include "apps/veridyn/run/version.hpp"
 #include "veridyn/aircraft/sensors/air_data_calibration.hpp"
 #include "veridyn/aircraft/sensors/swing_test.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/report/ground_report.hpp"
 
@@ -40,7 +41,7 @@ std::uint64_t seed_of(const Study& study) {
 }
 
 GroundResult swing_test(const Study& study, Progress& progress) {
-  aircraft::SwingTest test = aircraft::SwingTest::read(study.root().table("swing_test"));
+  aircraft::SwingTest test = aircraft::SwingTest::keys().read(study.root().table("swing_test"));
   test.seed = seed_of(study);
   study.root().finish();
   const aircraft::SwingTestResult analysis = aircraft::analyse_swing_test(test, progress);
@@ -59,7 +60,7 @@ GroundResult swing_test(const Study& study, Progress& progress) {
 }
 
 GroundResult calibration(const Study& study, Progress& progress) {
-  const aircraft::CalibrationStudy points = aircraft::CalibrationStudy::read(study.root().table("calibration"));
+  const aircraft::CalibrationStudy points = aircraft::CalibrationStudy::keys().read(study.root().table("calibration"));
   GroundResult result;
   result.seed = seed_of(study);
   study.root().finish();

@@ -7,6 +7,7 @@
 
 #include "apps/veridyn/live/camera_run.hpp"
 #include "apps/veridyn/run/console.hpp"
+#include "veridyn/aircraft/aircraft_keys.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/core/study_keys.hpp"
@@ -23,7 +24,10 @@ const std::pair<std::string, std::vector<StudyKeys> (*)()> kKinds[] = {{"vehicle
                                                                        {"muscle", muscle::study_keys},
                                                                        {"cueing", cueing::study_keys},
                                                                        {"live", live::study_keys},
-                                                                       {"camera", camera_keys}};
+                                                                       {"camera", camera_keys},
+                                                                       {"aircraft", aircraft::study_keys},
+                                                                       {"swing-test", aircraft::swing_test_keys},
+                                                                       {"calibration", aircraft::calibration_keys}};
 
 std::vector<StudyKeys> keys_of(const std::string& kind) {
   std::vector<std::string> names;

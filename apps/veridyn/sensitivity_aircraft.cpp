@@ -33,7 +33,7 @@ PreparedResponses prepare_flight_responses(const StudyRun& run) {
                   "deflections and air. Results are root mean squares of differences from the nominal aircraft over "
                   "each signal's standard deviation in the whole flight: of all signals by manoeuvre, and by signal "
                   "over all manoeuvres.",
-                  study->longest));
+                  study->options.longest));
   prepared.analyse = [study](numerics::BlockStore& store, Progress& p) {
     return aircraft::analyse_flight(*study, store, p);
   };

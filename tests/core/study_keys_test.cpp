@@ -31,12 +31,14 @@ struct Options {
   std::optional<double> throw_rad = {};
   double stop_rad = 25.0 * kDegree;
   std::uint64_t draws = 100;
-  bool on = true;
+  bool on = true, noise = true, bias = true;
   Filter filter = Filter::kNone;
   std::array<double, 3> place{};
   std::vector<double> times;
   std::vector<std::string> names{"alpha"};
+  std::vector<Filter> filters{Filter::kButterworth};
   std::filesystem::path file;
+  std::vector<std::filesystem::path> parts;
   Lag lag;
 };
 
@@ -64,8 +66,11 @@ const KeyTable<Options>& keys() {
           .numbers("place", &O::place, "m", kAnyNumber, "forward, right, down")
           .numbers("times", &O::times, "s", kNotNegative, "of what happens")
           .texts("names", &O::names, "of channels")
+          .choices("filters", &O::filters, {{"none", Filter::kNone}, {"Butterworth", Filter::kButterworth}}, "in turn")
+          .flags("without", {{"noise", &O::noise}, {"bias", &O::bias}}, false, "left out")
           .file("file", &O::file, "to read")
           .was("path")
+          .files("parts", &O::parts, "to read after it")
           .table("lag", &O::lag, lag_keys());
   return table;
 }
@@ -81,7 +86,8 @@ std::string refusal(const std::string& toml) {
 TEST(StudyKeys, FillWhatTheStudyGivesAndLeaveTheRest) {
   const Options o = read(
       "throw = \"30 deg\"\ndraws = 20\non = false\nfilter = \"Butterworth\"\nplace = [\"10 cm\", 0, -1]\ntimes = 4\n"
-      "names = [\"beta\", \"p\"]\npath = \"log.csv\"\nlag = { time = \"50 ms\" }\n");
+      "names = [\"beta\", \"p\"]\nfilters = [\"Butterworth\", \"none\"]\nparts = [\"a.csv\", \"b.csv\"]\nwithout = "
+      "[\"bias\"]\npath = \"log.csv\"\nlag = { time = \"50 ms\" }\n");
   EXPECT_EQ(o.rate_Hz, 50.0);
   ASSERT_TRUE(o.throw_rad);
   EXPECT_NEAR(*o.throw_rad, kPi / 6.0, 1e-15);
@@ -91,7 +97,11 @@ TEST(StudyKeys, FillWhatTheStudyGivesAndLeaveTheRest) {
   EXPECT_THAT(o.place, ElementsAre(0.1, 0.0, -1.0));
   EXPECT_THAT(o.times, ElementsAre(4.0));
   EXPECT_THAT(o.names, ElementsAre("beta", "p"));
+  EXPECT_THAT(o.filters, ElementsAre(Filter::kButterworth, Filter::kNone));
+  EXPECT_TRUE(o.noise);
+  EXPECT_FALSE(o.bias);
   EXPECT_EQ(o.file, "folder/log.csv");
+  EXPECT_THAT(o.parts, ElementsAre("folder/a.csv", "folder/b.csv"));
   EXPECT_EQ(o.lag.time_s, 0.05);
   EXPECT_EQ(o.lag.kind, "servo");
 }
@@ -102,6 +112,9 @@ TEST(StudyKeys, RefuseWhatIsOutOfRangeByItsPlace) {
   EXPECT_THAT(refusal("stop = 1\n"), HasSubstr("must be between 0 and 1"));
   EXPECT_THAT(refusal("draws = 5\n"), HasSubstr("thing.draws: = 5 must be from 10 to 1000"));
   EXPECT_THAT(refusal("filter = \"Bessel\"\n"), HasSubstr("'Bessel' is not one of none, Butterworth"));
+  EXPECT_THAT(refusal("filters = [\"none\", \"Bessel\"]\n"),
+              HasSubstr("'Bessel' is unknown (known: none, Butterworth)"));
+  EXPECT_THAT(refusal("without = [\"nois\"]\n"), HasSubstr("'nois' is unknown (did you mean 'noise'?)"));
   EXPECT_THAT(refusal("place = [1, 2]\n"), HasSubstr("thing.place: has 2 numbers, needs 3"));
   EXPECT_THAT(refusal("times = [1, -2]\n"), HasSubstr("thing.times: = -2 must be >= 0"));
   EXPECT_THAT(refusal("lag = { time = -1 }\n"), HasSubstr("thing.lag.time: = -1 must be >= 0"));
@@ -142,6 +155,57 @@ TEST(StudyKeys, OfTablesWithinHaveTheDefaultsOfWhatTheyAreIn) {
   EXPECT_THAT(why([&] { static_cast<void>(of("[thing]\n")); }), HasSubstr("thing.pose: is missing"));
 }
 
+struct Servos {
+  Lag first{.time_s = 0.5, .kind = "old"};
+  std::optional<Lag> last;
+  std::vector<Lag> others;
+};
+
+TEST(StudyKeys, ReadTablesWithinOverWhatIsThereOrAsAWhole) {
+  const auto table = KeyTable<Servos>("servos")
+                         .table("first", &Servos::first, lag_keys())
+                         .whole_table("last", &Servos::last, lag_keys())
+                         .tables("other", lag_keys(), [](const StudyTable& one, Servos& servos) {
+                           servos.others.push_back(lag_keys().read(one));
+                         });
+  const auto read = [&](const std::string& toml) {
+    return table.read(Study::parse("[servos]\n" + toml, "study.toml").root().table("servos"));
+  };
+  EXPECT_FALSE(read("").last);
+  Servos servos{.first = {}, .last = Lag{.time_s = 0.5, .kind = "old"}, .others = {}};
+  const Study study = Study::parse(
+      "[servos]\nfirst = { time = 1 }\nlast = { time = 2 }\n[[servos.other]]\ntime = 3\n[[servos.other]]\nkind = "
+      "\"none\"\ntime = 0\n",
+      "study.toml");
+  table.read(study.root().table("servos"), servos);
+  EXPECT_EQ(servos.first.time_s, 1.0);
+  EXPECT_EQ(servos.first.kind, "servo");
+  EXPECT_EQ(servos.last->kind, "servo") << "as a whole, with its default";
+  ASSERT_EQ(servos.others.size(), 2U);
+  EXPECT_EQ(servos.others[0].time_s, 3.0);
+  EXPECT_EQ(servos.others[1].kind, "none");
+  EXPECT_EQ(read("first = { time = 1 }\n").first.kind, "old") << "over what was there";
+  const std::vector<StudyKeys> all = table.described();
+  ASSERT_EQ(all.size(), 4U);
+  EXPECT_EQ(heading_of(all[1]), "[servos.first]");
+  EXPECT_EQ(heading_of(all[3]), "[[servos.other]]");
+}
+
+TEST(StudyKeys, OfAPartBringItsTablesAndRules) {
+  struct Plant {
+    Options options;
+  };
+  const auto table = KeyTable<Plant>("thing").with(&Plant::options, keys());
+  const auto read = [&](const std::string& toml) {
+    return table.read(Study::parse("[thing]\n" + toml, "study.toml").root().table("thing"));
+  };
+  EXPECT_EQ(read("draws = 20\nlag = { time = 1 }\n").options.lag.time_s, 1.0);
+  EXPECT_THAT(why([&] { static_cast<void>(read("lag = { kind = \"none\" }\n")); }),
+              HasSubstr("thing.lag.kind: has no time"));
+  ASSERT_EQ(table.described().size(), 2U);
+  EXPECT_EQ(table.described()[1].table, "thing.lag");
+}
+
 TEST(StudyKeys, KnowTheirNamesForUnknownOnes) {
   const Study study = Study::parse("[thing]\nrat = 3\n", "study.toml");
   static_cast<void>(keys().read(study.root().table("thing")));
@@ -163,6 +227,8 @@ TEST(StudyKeys, DescribeThemselvesWithDefaultsThatTheStudyWouldTake) {
   EXPECT_EQ(shown("stop"), "\"25 deg\"");
   EXPECT_EQ(shown("filter"), "\"none\"");
   EXPECT_EQ(shown("place"), "[0, 0, 0]");
+  EXPECT_EQ(shown("filters"), "[\"Butterworth\"]");
+  EXPECT_EQ(shown("without"), "[]");
   EXPECT_EQ(shown("names"), "[\"alpha\"]");
   // Written out and read again they are the defaults.
   std::string toml;

@@ -6,6 +6,7 @@
 
 #include "tests/io/support.hpp"
 #include "tests/recording/lively_signal.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::recording {
 namespace {
@@ -105,8 +106,7 @@ TEST(Delays, GivenOnesAreTakenOffTheStampsOfTheirGroup) {
   recording.add(channel("beta", 10.0, 1.0));
   const DelayGroup group{"vanes", {"alpha", "beta", "missing"}};
   const Study study = Study::parse("[delays]\nvanes = '20 ms'\n", "study.toml", ".");
-  DelayOptions options;
-  options.read_keys(study.root().table("delays"), {group});
+  const DelayOptions options = DelayOptions::keys({group}).read(study.root().table("delays"));
   const std::optional<DelayReport> report = take_off_given(recording, group, options);
   ASSERT_TRUE(report.has_value());
   EXPECT_EQ(report->finding, DelayFinding::kGiven);
@@ -117,10 +117,7 @@ TEST(Delays, GivenOnesAreTakenOffTheStampsOfTheirGroup) {
 
 TEST(Delays, RefuseASearchOfNoLength) {
   const Study study = Study::parse("[delays]\nmax = 0\n", "study.toml", ".");
-  EXPECT_THAT(message_of([&] {
-                DelayOptions options;
-                options.read_keys(study.root().table("delays"), {});
-              }),
+  EXPECT_THAT(message_of([&] { static_cast<void>(DelayOptions::keys({}).read(study.root().table("delays"))); }),
               HasSubstr("delays.max"));
 }
 

@@ -62,7 +62,7 @@ TEST_F(StudyData, SaysHowATableIsWritten) {
   EXPECT_THAT(message_of([&] { (void)read("file = 'run.txt'\ndelimiter = 'pipe'\n"); }), HasSubstr("data.delimiter"));
   EXPECT_THAT(message_of([&] { (void)read("file = 'run.txt'\ndecimal = ';'\n"); }), HasSubstr("data.decimal"));
   EXPECT_THAT(message_of([&] { (void)read("file = 'run.txt'\npart = 0\n"); }),
-              HasSubstr("data.part: = 0 must be 1 or more"));
+              HasSubstr("data.part: = 0 must be from 1 to 1000000"));
   std::string twice = "time,x\n";
   for (int k = 0; k < 2; ++k)
     for (int i = 0; i < 10 + k; ++i) twice += std::to_string(0.1 * i) + "," + std::to_string(k) + "\n";

@@ -16,23 +16,19 @@
 #include "veridyn/aircraft/tracking/coefficient_tracker.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/study.hpp"
+#include "veridyn/recording/study_data.hpp"
 
 namespace veridyn::aircraft {
 
+/// The keys of `[data]` of a flight.
+struct FlightDataKeys : recording::DataKeys {
+  std::filesystem::path calibration;
+
+  [[nodiscard]] static const KeyTable<FlightDataKeys>& keys();
+};
+
 /// A study of one flight, read and checked: the aircraft, the recording, what to do with it. A study that names several
 /// recordings (recording::read_study_recordings) is one of these a flight, which differ in their recording only.
-///
-///     seed = 1
-///     [subject]      see read_subject
-///     [data]         `calibration = "calibration.toml"`: see read_calibration; the rest:
-///                    recording::read_study_recordings; `[data.map]`: see map_channels. Without it the study must have
-///                    a `[flight]`, which is then simulated. `[[data.run]]` has `calibration`, `longitudinal` and
-///                    `lateral` (see SegmentOptions) too
-///     [delays]       see DelayAlignment          [signals]   see SignalOptions
-///     [reconstruct]  see ReconstructOptions      [segments]  see SegmentOptions
-///     [identify]     see IdentifyOptions         [validate]  see ValidationOptions
-///     [track]        see TrackOptions
-///     [uncertainty]  see UncertaintyOptions
 struct FlightStudy {
   std::string name;
   std::uint64_t seed = 0;

@@ -12,6 +12,7 @@
 #include "veridyn/aircraft/simulation/flight_replay.hpp"
 #include "veridyn/aircraft/simulation/simulate_study.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/numerics/batches/fingerprint.hpp"
 
 namespace veridyn::aircraft {
@@ -111,7 +112,7 @@ class ChangedFlights {
   ChangedFlights(const FlightSensitivityStudy& study, const SimulatedFlight& flight)
       : subject_(study.flight.subject), inputs_(study.inputs), replay_(flight.truth, study.flight.gravity) {
     for (std::size_t i = 0; i < kReplaySignals.size(); ++i) scale_[i] = spread(replay_.flown(i));
-    stretches_ = stretches_of(flight, replay_, study.longest);
+    stretches_ = stretches_of(flight, replay_, study.options.longest);
     for (const Stretch& s : stretches_) {
       Eigen::MatrixXd signals;
       if (!replay_.fly(subject_, s.begin, s.end, signals))
@@ -173,15 +174,28 @@ class ChangedFlights {
 
 }  // namespace
 
+const KeyTable<FlightSensitivityOptions>& FlightSensitivityOptions::keys() {
+  using O = FlightSensitivityOptions;
+  static const auto table =
+      KeyTable<O>("sensitivity",
+                  "What varies: by default each number of the aircraft that is not 0, parameters of the model by name "
+                  "(`CL_alpha`), `mass`, `Jx`, `Jy`, `Jz`, `Jxz`; and how indices are computed.")
+          .number("longest", &O::longest, "s", kPositive, "of each manoeuvre so much at most is flown again")
+          .with(IndexOptions::keys())
+          .with(&O::given, estimation::GivenInputs::keys())
+          .check([](const StudyTable& t, O& o) {
+            if (o.method == estimation::IndexMethod::kNone)
+              t.fail("method", "= \"none\" leaves nothing to compute; take \"variance\" or \"morris\"");
+          });
+  return table;
+}
+
 FlightSensitivityStudy read_flight_sensitivity(const StudyTable& root) {
   FlightSensitivityStudy study{.flight = read_simulation(root)};
   if (!study.flight.changes.empty())
     root.table("flight").fail("change", "has no place in a sensitivity, which is of one aircraft: leave it out");
-  const StudyTable table = root.table_or_empty("sensitivity");
-  study.options = estimation::read_index_options(table, study.flight.seed);
-  if (study.options.method == estimation::IndexMethod::kNone)
-    table.fail("method", "= \"none\" leaves nothing to compute; take \"variance\" or \"morris\"");
-  study.longest = table.positive_or("longest", "s", study.longest);
+  study.options = FlightSensitivityOptions::keys().read(root.table_or_empty("sensitivity"));
+  study.options.variance.seed = study.flight.seed;
   std::vector<IndexInput> known;
   std::vector<std::string> defaults;
   Subject subject = study.flight.subject;
@@ -190,7 +204,7 @@ FlightSensitivityStudy read_flight_sensitivity(const StudyTable& root) {
     known.push_back({.name = number.name, .unit = number.unit, .nominal = *number.value});
     if (*number.value != 0.0) defaults.push_back(number.name);
   }
-  study.inputs = estimation::read_index_inputs(table, known, defaults);
+  study.inputs = estimation::index_inputs(study.options.given, known, defaults);
   check_flight_inputs(study.inputs, study.flight.subject);
   return study;
 }

@@ -10,21 +10,23 @@
 
 namespace veridyn::aircraft {
 
+/// What varies and how indices are computed. Study table `[sensitivity]`.
+struct FlightSensitivityOptions : estimation::IndexOptions {
+  double longest = 10.0;  ///< [s]
+  estimation::GivenInputs given = {};
+
+  [[nodiscard]] static const KeyTable<FlightSensitivityOptions>& keys();
+};
+
 /// A study of which parameter of an aircraft moves which manoeuvre and signal of a simulated flight, read and checked.
 struct FlightSensitivityStudy {
   SimulationOptions flight;
   std::vector<estimation::IndexInput> inputs = {};
-  estimation::IndexOptions options = {};
-  double longest = 10.0;  ///< of a manoeuvre that is flown again [s]
+  FlightSensitivityOptions options = {};
 };
 
-/// Reads the flight (`read_simulation`) and
-///
-///     [sensitivity]              # `read_index_options`, `read_index_inputs`
-///     longest = 10               # of each manoeuvre so many seconds at most are flown again
-///
-/// where what may vary are the parameters of the aerodynamic model by name (CL_alpha), `mass` and Jx, Jy, Jz, Jxz;
-/// without inputs all of them that are not zero.
+/// Reads the flight (`read_simulation`) and `[sensitivity]`, where what may vary are the parameters of the aerodynamic
+/// model by name (CL_alpha), `mass` and Jx, Jy, Jz, Jxz; without inputs all of them that are not zero.
 /// @throws InputError with file, line and key; also for a flight with [[flight.change]], and where an end of a range is
 /// no aircraft's.
 [[nodiscard]] FlightSensitivityStudy read_flight_sensitivity(const StudyTable& root);

@@ -7,6 +7,7 @@
 #include "veridyn/aircraft/simulation/simulate_study.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/recording/grid_signals.hpp"
 #include "veridyn/recording/study_data.hpp"
@@ -37,17 +38,17 @@ FlightStudy read_options(const Study& study) {
   result.seed = static_cast<std::uint64_t>(root.integer_or("seed", 1));
   static_cast<void>(root.text_or("title", ""));
   result.subject = read_subject(root.table("subject"));
-  result.delays = DelayAlignment::read(root.table_or_empty("delays"));
-  result.reconstruct = ReconstructOptions::read(root.table_or_empty("reconstruct"));
+  result.delays = DelayAlignment::keys().read(root.table_or_empty("delays"));
+  result.reconstruct = ReconstructOptions::keys().read(root.table_or_empty("reconstruct"));
   if (const std::filesystem::path& estimate = result.reconstruct.estimate_file; !estimate.empty())
     result.filter_subject = estimated_subject(result.subject, io::read_estimate(estimate), estimate.string());
-  result.signals = SignalOptions::read(root.table_or_empty("signals"));
-  result.segments = SegmentOptions::read(root.table_or_empty("segments"));
-  result.identify = IdentifyOptions::read(root.table_or_empty("identify"));
+  result.signals = SignalOptions::keys().read(root.table_or_empty("signals"));
+  result.segments = SegmentOptions::keys().read(root.table_or_empty("segments"));
+  result.identify = IdentifyOptions::keys().read(root.table_or_empty("identify"));
   result.identify.seed = result.seed;
-  result.validate = ValidationOptions::read(root.table_or_empty("validate"));
-  result.track = TrackOptions::read(root.table_or_empty("track"));
-  result.uncertainty = UncertaintyOptions::read(root.table_or_empty("uncertainty"));
+  result.validate = ValidationOptions::keys().read(root.table_or_empty("validate"));
+  result.track = TrackOptions::keys().read(root.table_or_empty("track"));
+  result.uncertainty = UncertaintyOptions::keys().read(root.table_or_empty("uncertainty"));
   if (!(result.segments.min_airspeed_mps > 0.0))
     result.segments.min_airspeed_mps = least_flying_airspeed(result.subject);
   return result;
@@ -72,6 +73,13 @@ FlightStudy simulated(const Study& study, FlightStudy result, Progress& progress
   return result;
 }
 
+const KeyTable<FlightDataKeys>& calibration_file_keys() {
+  static const auto table =
+      KeyTable<FlightDataKeys>("data").file("calibration", &FlightDataKeys::calibration,
+                                            "`calibration.toml` by which channels are corrected, after `[data.map]`");
+  return table;
+}
+
 /// One of the recordings, in standard names and calibrated.
 FlightStudy recorded(const recording::StudyRecording& run, const StudyTable& data, FlightStudy result,
                      const SurfaceThrows& throws) {
@@ -81,10 +89,11 @@ FlightStudy recorded(const recording::StudyRecording& run, const StudyTable& dat
   if (!result.reconstruct.estimate_file.empty()) result.inputs.push_back(result.reconstruct.estimate_file);
   const StudyTable map = recording::table_with("map", run.own, data).table_or_empty("map");
   result.mapped = map_channels(run.recording, map, throws);
-  if (const StudyTable& table = recording::table_with("calibration", run.own, data); table.has("calibration")) {
-    const std::filesystem::path file = table.file("calibration");
-    apply_calibration(read_calibration(file), result.mapped);
-    result.inputs.push_back(file);
+  FlightDataKeys keys;
+  for (const StudyTable* table : {&data, &run.own}) calibration_file_keys().read(*table, keys);
+  if (!keys.calibration.empty()) {
+    apply_calibration(read_calibration(keys.calibration), result.mapped);
+    result.inputs.push_back(keys.calibration);
   }
   for (const auto& [key, spans] :
        {std::pair("longitudinal", &result.segments.longitudinal), std::pair("lateral", &result.segments.lateral)}) {
@@ -112,6 +121,14 @@ std::vector<FlightStudy> alike(std::vector<FlightStudy> flights) {
 }
 
 }  // namespace
+
+const KeyTable<FlightDataKeys>& FlightDataKeys::keys() {
+  static const auto table =
+      KeyTable<FlightDataKeys>("data", "The log of a flight, or of several flights of one aircraft (section 3).")
+          .with(recording::DataKeys::keys())
+          .with(calibration_file_keys());
+  return table;
+}
 
 std::vector<FlightStudy> read_flights(const Study& study, Progress& progress) {
   const StudyTable& root = study.root();

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/nearest.hpp"
 #include "veridyn/core/units.hpp"
 
 namespace veridyn {
@@ -24,10 +25,13 @@ std::string KeyRange::text() const {
                    : fmt::format("at least {:.9g} and below {:.9g}", low, high);
 }
 
+std::string heading_of(const StudyKeys& table) {
+  return table.repeated ? fmt::format("[[{}]]", table.table) : fmt::format("[{}]", table.table);
+}
+
 std::string in_markdown(const StudyKeys& table) {
   std::string text =
-      fmt::format("| `{}[{}]{}` | unit | default | values | meaning |\n| --- | --- | --- | --- | --- |\n",
-                  table.repeated ? "[" : "", table.table, table.repeated ? "]" : "");
+      fmt::format("| `{}` | unit | default | values | meaning |\n| --- | --- | --- | --- | --- |\n", heading_of(table));
   for (const StudyKey& key : table.keys)
     text += fmt::format("| `{}` | {} | {} | {} | {} |\n", key.name, key.unit == "1" ? "" : key.unit,
                         key.in_words || key.otherwise.empty() ? key.otherwise : fmt::format("`{}`", key.otherwise),
@@ -148,6 +152,18 @@ long long integer_in(const StudyTable& table, const std::string& name, long long
   const long long value = table.integer(name);
   if (value < least || value > most) table.fail(name, fmt::format("= {} must be from {} to {}", value, least, most));
   return value;
+}
+
+std::vector<std::size_t> chosen_in(const StudyTable& table, const std::string& name,
+                                   const std::vector<std::string>& names) {
+  std::vector<std::size_t> chosen;
+  for (const std::string& text : table.texts(name)) {
+    const auto at = std::ranges::find(names, text);
+    if (at == names.end())
+      table.fail(name, fmt::format("'{}' is unknown{}", text, suggestion(text, names, names.size())));
+    chosen.push_back(static_cast<std::size_t>(at - names.begin()));
+  }
+  return chosen;
 }
 
 }  // namespace internal

@@ -59,6 +59,9 @@ struct StudyKeys {
   bool repeated = false;  ///< `[[table]]`
 };
 
+/// "[segments]", "[[data.run]]".
+[[nodiscard]] std::string heading_of(const StudyKeys& table);
+
 /// The keys of tables as Markdown, one table each: key, unit, default, range, meaning.
 [[nodiscard]] std::string in_markdown(const StudyKeys& keys);
 
@@ -88,6 +91,9 @@ namespace internal {
 [[nodiscard]] std::vector<double> numbers_in(const StudyTable& table, const std::string& name, const std::string& unit,
                                              const KeyRange& range, std::size_t size);
 [[nodiscard]] long long integer_in(const StudyTable& table, const std::string& name, long long least, long long most);
+/// Where the texts of a list are among `names`. @throws InputError for one that is not
+[[nodiscard]] std::vector<std::size_t> chosen_in(const StudyTable& table, const std::string& name,
+                                                 const std::vector<std::string>& names);
 
 }  // namespace internal
 
@@ -212,6 +218,16 @@ class KeyTable {
         });
   }
 
+  /// Several paths; one counts as a list of one.
+  template <typename Field>
+  KeyTable& files(std::string name, Field field, std::string says) {
+    return add(
+        {std::move(name), {}, "files", {}, std::move(says)}, [](T&) { return std::string(); },
+        [field](const StudyTable& table, const std::string& key, T& object) {
+          std::invoke(field, object) = table.files(key);
+        });
+  }
+
   /// One of several names, each of which stands for a value of the field.
   template <typename Field>
   KeyTable& choice(std::string name, Field field,
@@ -229,6 +245,47 @@ class KeyTable {
           const std::string chosen = table.choice_or(key, names, "");
           for (const auto& [text, value] : values)
             if (text == chosen) std::invoke(field, object) = value;
+        });
+  }
+
+  /// A list of such names, of which the field has the values in the order of the study.
+  template <typename Field>
+  KeyTable& choices(std::string name, Field field,
+                    std::vector<std::pair<std::string, typename ValueOf<Field>::value_type>> values, std::string says) {
+    std::vector<std::string> names;
+    for (const auto& [text, value] : values) names.push_back(text);
+    return add(
+        {std::move(name), {}, "a list of " + quoted_list(names, "`"), {}, std::move(says)},
+        [field, values](T& object) {
+          std::vector<std::string> now;
+          for (const auto& one : std::invoke(field, object))
+            for (const auto& [text, value] : values)
+              if (value == one) now.push_back(text);
+          return '[' + quoted_list(now) + ']';
+        },
+        [field, names, values](const StudyTable& table, const std::string& key, T& object) {
+          std::invoke(field, object).clear();
+          for (const std::size_t i : internal::chosen_in(table, key, names))
+            std::invoke(field, object).push_back(values[i].second);
+        });
+  }
+
+  /// A list of names, each of which makes a flag `value`.
+  KeyTable& flags(std::string name, std::vector<std::pair<std::string, bool T::*>> flags, bool value,
+                  std::string says) {
+    std::vector<std::string> names;
+    for (const auto& [text, member] : flags) names.push_back(text);
+    return add(
+        {std::move(name), {}, "a list of " + quoted_list(names, "`"), {}, std::move(says)},
+        [flags, value](T& object) {
+          std::vector<std::string> now;
+          for (const auto& [text, member] : flags)
+            if (object.*member == value) now.push_back(text);
+          return '[' + quoted_list(now) + ']';
+        },
+        [flags, names, value](const StudyTable& table, const std::string& key, T& object) {
+          for (const auto& [text, member] : flags) object.*member = !value;
+          for (const std::size_t i : internal::chosen_in(table, key, names)) object.*flags[i].second = value;
         });
   }
 
@@ -259,6 +316,13 @@ class KeyTable {
                             take(table, key, std::invoke(field, object));
                           },
                           entry.old_name, entry.required});
+    for (const auto& inner : part.within_)
+      within_.push_back({[field, describe = inner.describe](std::vector<StudyKeys>& all, T& object) {
+                           describe(all, std::invoke(field, object));
+                         },
+                         [field, take = inner.take](const StudyTable& table, T& object) {
+                           take(table, std::invoke(field, object));
+                         }});
     for (const auto& rule : part.checks_)
       checks_.push_back([field, rule](const StudyTable& table, T& object) { rule(table, std::invoke(field, object)); });
     return *this;
@@ -266,15 +330,36 @@ class KeyTable {
   /// A table within, `[table.name]`, with keys of its own.
   template <typename Field, typename Part>
   KeyTable& table(const std::string& name, Field field, const KeyTable<Part>& part) {
-    within_.push_back({[part, field, path = table_ + '.' + name](std::vector<StudyKeys>& all, T& defaults) {
-                         std::vector<StudyKeys> more = part.described(std::invoke(field, defaults));
-                         more.front().table = path;
-                         all.insert(all.end(), more.begin(), more.end());
-                       },
-                       [part, field, name](const StudyTable& outer, T& object) {
-                         part.read(outer.table_or_empty(name), std::invoke(field, object));
-                       }});
-    return *this;
+    return add_within(
+        name, part.table_, [part, field](T& object) { return part.described(std::invoke(field, object)); },
+        [part, field, name](const StudyTable& outer, T& object) {
+          part.read(outer.table_or_empty(name), std::invoke(field, object));
+        });
+  }
+  /// The same where it is the field's value as a whole: what it leaves out has its default, whatever the field had.
+  template <typename Field, typename Part>
+  KeyTable& whole_table(const std::string& name, Field field, const KeyTable<Part>& part) {
+    return within(name, part, [part, field, name](const StudyTable& outer, T& object) {
+      if (outer.has(name)) std::invoke(field, object) = part.read(outer.table(name));
+    });
+  }
+  /// An array of tables within, `[[table.name]]`; `take` is called for each.
+  template <typename Part>
+  KeyTable& tables(const std::string& name, const KeyTable<Part>& part,
+                   std::function<void(const StudyTable&, T&)> take) {
+    return within(
+        name, part,
+        [name, take = std::move(take)](const StudyTable& outer, T& object) {
+          for (const StudyTable& one : outer.tables(name)) take(one, object);
+        },
+        true);
+  }
+  /// A table within that is read by hand: `take` gets this table and the object.
+  template <typename Part>
+  KeyTable& within(const std::string& name, const KeyTable<Part>& part, std::function<void(const StudyTable&, T&)> take,
+                   bool repeated = false) {
+    return add_within(
+        name, part.table_, [part](T&) { return part.described(); }, std::move(take), repeated);
   }
 
   /// The study may have several of it, `[[table]]`.
@@ -362,6 +447,23 @@ class KeyTable {
   KeyTable& add(StudyKey key, std::function<std::string(T&)> shown,
                 std::function<void(const StudyTable&, const std::string&, T&)> take) {
     entries_.push_back({std::move(key), std::move(shown), std::move(take)});
+    return *this;
+  }
+
+  /// `described`: the tables of the part, whose first is called `own`.
+  KeyTable& add_within(const std::string& name, const std::string& own,
+                       std::function<std::vector<StudyKeys>(T&)> described,
+                       std::function<void(const StudyTable&, T&)> take, bool repeated = false) {
+    within_.push_back({[own, described = std::move(described), repeated,
+                        path = table_.empty() ? name : table_ + '.' + name](std::vector<StudyKeys>& all, T& object) {
+                         for (StudyKeys& keys : described(object)) {
+                           if (keys.keys.empty()) continue;
+                           keys.table = path + keys.table.substr(own.size());
+                           keys.repeated = keys.repeated || (repeated && keys.table == path);
+                           all.push_back(std::move(keys));
+                         }
+                       },
+                       std::move(take)});
     return *this;
   }
 

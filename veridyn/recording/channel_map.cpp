@@ -8,6 +8,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::recording {
 namespace {
@@ -39,11 +40,67 @@ struct MappedValues {
   std::string from;  ///< in words
 };
 
-/// How an entry turns a channel into SI.
-struct Conversion {
+/// How a standard channel is made. Study table `[data.map.CHANNEL]`.
+struct MapEntry {
+  std::string channel, selector;
+  std::vector<std::string> channels;
+  std::vector<double> weights;
+  StudyTable cases = StudyTable();
   std::string unit;  ///< empty: that of the channel
-  double zero = 0.0, scale = 1.0;
+  double zero = 0.0, scale = 1.0, delay_s = 0.0;
 };
+
+void check_entry(const StudyTable& table, MapEntry& entry) {
+  std::string source;
+  for (const char* key : {"channel", "channels", "switch"}) {
+    if (!table.has(key)) continue;
+    if (!source.empty()) table.fail(key, fmt::format("and {} exclude each other", source));
+    source = key;
+  }
+  if (source != "channels" && table.has("weights")) table.fail("weights", "are of several channels");
+  if ((source == "switch") != table.has("cases"))
+    table.fail("cases", source == "switch" ? "are missing: which channel it selects" : "are of a switch");
+  if (table.has("weights") && entry.weights.size() != entry.channels.size())
+    table.fail("weights", fmt::format("has {} numbers for {} channels", entry.weights.size(), entry.channels.size()));
+}
+
+const KeyTable<MapEntry>& entry_keys() {
+  using M = MapEntry;
+  static const auto table =
+      KeyTable<M>(
+          "CHANNEL",
+          "A standard channel that is not a channel of the log as it is: scale (raw - zero), of one channel, of "
+          "several or of those that a switch selects.")
+          .text("channel", &M::channel, "of the log")
+          .texts("channels", &M::channels, "or several, whose weighted sum is taken")
+          .numbers("weights", &M::weights, "1", kAnyNumber, "of these")
+          .otherwise("their mean")
+          .text("switch", &M::selector, "or a channel that selects others")
+          .other({"cases", "", "`{ 1 = \"de_in\", 2 = \"de\" }`", "",
+                  "the channel for each value of the switch; other values leave a gap", true},
+                 [](const StudyTable& t, const std::string& key, M& m) {
+                   m.cases = t.table(key);
+                   for (const std::string& value : m.cases.keys()) static_cast<void>(m.cases.text(value));
+                 })
+          .text("unit", &M::unit, "of the result")
+          .otherwise("that of the log's channel")
+          .number("zero", &M::zero, "1", kAnyNumber, "taken off the raw number")
+          .number("scale", &M::scale, "1", kAnyNumber, "by which what is left is multiplied")
+          .number("delay", &M::delay_s, "s", kAnyNumber, "how late the sensor reports; taken off its stamps")
+          .check(check_entry);
+  return table;
+}
+
+MapEntry read_entry(const StudyTable& table, const StandardChannel& target) {
+  MapEntry entry = entry_keys().read(table);
+  if (entry.unit.empty()) return entry;
+  try {
+    static_cast<void>(parse_unit_like(entry.unit, parse_unit(target.unit)));
+  } catch (const InputError& wrong) {
+    table.fail("unit", wrong.what());
+  }
+  return entry;
+}
 
 const Channel& source_of(const Recording& log, const StudyTable& table, std::string_view key,
                          const std::string& channel) {
@@ -59,34 +116,19 @@ void check_dimension(const StudyTable& table, std::string_view key, const Channe
                               target.unit));
 }
 
-Conversion read_conversion(const StudyTable& entry, const StandardChannel& target) {
-  Conversion c{.unit = entry.text_or("unit", "")};
-  if (!c.unit.empty()) {
-    try {
-      static_cast<void>(parse_unit_like(c.unit, parse_unit(target.unit)));
-    } catch (const InputError& wrong) {
-      entry.fail("unit", wrong.what());
-    }
-  }
-  c.zero = entry.number_or("zero", "1", 0.0);
-  c.scale = entry.number_or("scale", "1", 1.0);
-  return c;
-}
-
 /// The channel that another one, the switch, selects at each moment.
-MappedValues switched(const Recording& log, const StudyTable& entry, const StandardChannel& target,
-                      const Conversion& c) {
-  const std::string selector_name = entry.text("switch");
-  const Channel& selector = source_of(log, entry, "switch", selector_name);
-  const StudyTable cases = entry.table("cases");
+MappedValues switched(const Recording& log, const StudyTable& table, const MapEntry& entry,
+                      const StandardChannel& target) {
+  const Channel& selector = source_of(log, table, "switch", entry.selector);
+  const StudyTable& cases = entry.cases;
   MappedValues out{.time = selector.time, .values = std::vector<double>(selector.size(), kNaN), .from = {}};
   std::vector<std::string> parts;
   for (const std::string& key : cases.keys()) {
     const std::string channel = cases.text(key);
     const Channel& raw = source_of(log, cases, key, channel);
-    check_dimension(cases, key, raw, c.unit, target);
-    const std::vector<double> at =
-        interpolated(Channel{raw.name, raw.unit, "", raw.time, in_si(raw, c.zero, c.scale, c.unit)}, selector.times());
+    check_dimension(cases, key, raw, entry.unit, target);
+    const std::vector<double> at = interpolated(
+        Channel{raw.name, raw.unit, "", raw.time, in_si(raw, entry.zero, entry.scale, entry.unit)}, selector.times());
     double number = 0.0;
     try {
       number = std::stod(key);
@@ -96,26 +138,24 @@ MappedValues switched(const Recording& log, const StudyTable& entry, const Stand
     for (std::size_t i = 0; i < out.values.size(); ++i) {
       if (selector.value[i] == number) out.values[i] = at[i];
     }
-    parts.push_back(fmt::format("{} when {} = {}", channel, selector_name, key));
+    parts.push_back(fmt::format("{} when {} = {}", channel, entry.selector, key));
   }
   out.from = fmt::format("{}", fmt::join(parts, ", "));
   return out;
 }
 
 /// The weighted sum of several channels, by default their mean.
-MappedValues weighted_sum(const Recording& log, const StudyTable& entry, const StandardChannel& target,
-                          const Conversion& c) {
-  const std::vector<std::string> names = entry.texts("channels");
-  const std::vector<double> weights = entry.has("weights")
-                                          ? entry.numbers("weights", "1")
-                                          : std::vector<double>(names.size(), 1.0 / static_cast<double>(names.size()));
-  if (weights.size() != names.size())
-    entry.fail("weights", fmt::format("has {} numbers for {} channels", weights.size(), names.size()));
+MappedValues weighted_sum(const Recording& log, const StudyTable& table, const MapEntry& entry,
+                          const StandardChannel& target) {
+  const std::vector<std::string>& names = entry.channels;
+  const std::vector<double> weights = entry.weights.empty()
+                                          ? std::vector<double>(names.size(), 1.0 / static_cast<double>(names.size()))
+                                          : entry.weights;
   MappedValues out;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const Channel& raw = source_of(log, entry, "channels", names[i]);
-    check_dimension(entry, "channels", raw, c.unit, target);
-    const std::vector<double> si = in_si(raw, c.zero, c.scale, c.unit);
+    const Channel& raw = source_of(log, table, "channels", names[i]);
+    check_dimension(table, "channels", raw, entry.unit, target);
+    const std::vector<double> si = in_si(raw, entry.zero, entry.scale, entry.unit);
     if (i == 0) {
       out.time = raw.time;
       out.values.assign(si.size(), 0.0);
@@ -138,22 +178,22 @@ MappedValues map_from_study(const Recording& log, const StudyTable& map, const S
     check_dimension(map, target.name, raw, unit, target);
     return {raw.time, in_si(raw, 0.0, 1.0, unit), channel};
   }
-  const StudyTable entry = map.table(target.name);
-  const Conversion c = read_conversion(entry, target);
-  const double delay = entry.number_or("delay", "s", 0.0);
+  const StudyTable table = map.table(target.name);
+  const MapEntry entry = read_entry(table, target);
   MappedValues out;
-  if (entry.has("switch")) {
-    out = switched(log, entry, target, c);
-  } else if (entry.has("channels")) {
-    out = weighted_sum(log, entry, target, c);
+  if (!entry.selector.empty()) {
+    out = switched(log, table, entry, target);
+  } else if (!entry.channels.empty()) {
+    out = weighted_sum(log, table, entry, target);
   } else {
-    out.from = entry.text("channel");
-    const Channel& raw = source_of(log, entry, "channel", out.from);
-    check_dimension(entry, "channel", raw, c.unit, target);
+    if (entry.channel.empty()) table.fail("channel", "is missing: give channel, channels or switch");
+    out.from = entry.channel;
+    const Channel& raw = source_of(log, table, "channel", out.from);
+    check_dimension(table, "channel", raw, entry.unit, target);
     out.time = raw.time;
-    out.values = in_si(raw, c.zero, c.scale, c.unit);
+    out.values = in_si(raw, entry.zero, entry.scale, entry.unit);
   }
-  if (delay != 0.0) out.time = make_time_base(shifted(*out.time, delay));
+  if (entry.delay_s != 0.0) out.time = make_time_base(shifted(*out.time, entry.delay_s));
   return out;
 }
 
@@ -255,15 +295,23 @@ void check_channel_map(const StudyTable& map, std::span<const StandardChannel> s
       static_cast<void>(map.text(name));
       continue;
     }
-    const StudyTable entry = map.table(name);
-    for (const char* key : {"channel", "unit", "switch"}) static_cast<void>(entry.text_or(key, ""));
-    for (const char* key : {"zero", "scale"}) static_cast<void>(entry.number_or(key, "1", 0.0));
-    static_cast<void>(entry.number_or("delay", "s", 0.0));
-    if (entry.has("channels")) static_cast<void>(entry.texts("channels"));
-    if (entry.has("weights")) static_cast<void>(entry.numbers("weights", "1"));
-    const StudyTable cases = entry.table_or_empty("cases");
-    for (const std::string& key : cases.keys()) static_cast<void>(cases.text(key));
+    static_cast<void>(entry_keys().read(map.table(name)));
   }
+}
+
+const KeyTable<ChannelMap>& ChannelMap::keys() {
+  static const auto table =
+      KeyTable<ChannelMap>("map",
+                           "Which channel of the log is which standard one, `airspeed = \"ARSP.Airspeed\"`; a table "
+                           "says how it is made, and `\"none\"` takes a channel away.")
+          .other({kUnits, "", "`[\"deg\", \"deg/s\", \"kt\"]`, or `\"SI\"`", "none",
+                  "of channels for which the log has none: the one of the kind that is needed", true},
+                 [](const StudyTable& t, const std::string&, ChannelMap&) {
+                   static_cast<void>(declared_unit(t, {"", "1"}));
+                 })
+          // Which names there may be, only the domain knows: `with_channel_map`.
+          .within("CHANNEL", entry_keys(), [](const StudyTable&, ChannelMap&) {});
+  return table;
 }
 
 MappedRecording with_channel_map(MappedRecording mapped, const Recording& log,

@@ -43,18 +43,12 @@ struct MappedRecording {
 [[nodiscard]] MappedRecording with_standard_channels(MappedRecording mapped, const Recording& log,
                                                      std::span<const StandardChannel> standard, const StudyTable& map);
 
-/// Applies the study's `[data.map]`. A key is a standard name, its value the name of a channel or a table:
-///
-///     airspeed = "ARSP.Airspeed"
-///     alpha    = { channel = "CUR2.Volt", zero = 2.5, scale = 0.61, unit = "rad", delay = "20 ms" }
-///     aileron  = { channels = ["da_l", "da_r"], weights = [0.5, -0.5], unit = "rad" }
-///     elevator = { switch = "mode", cases = { 1 = "de_in", 2 = "de" }, unit = "rad" }
-///
-///     units    = ["deg", "deg/s", "kt"]
-///
-/// `units` declares those of channels for which the log has none: the one of the kind that is needed, or all in SI
-/// (`units = "SI"`). value = scale * (raw - zero), in `unit` where the log has none; `delay` is how late the sensor
-/// reports and is taken off its stamps. `"none"` takes a channel away.
+/// The keys of `[data.map]` besides standard names, and those of a channel that is made by a table.
+struct ChannelMap {
+  [[nodiscard]] static const KeyTable<ChannelMap>& keys();
+};
+
+/// Applies the study's `[data.map]`. A key is a standard name, its value the name of a channel or a table.
 /// @throws InputError for an unknown standard name (nearest suggested) or a source that the log lacks (lists what it
 /// has).
 [[nodiscard]] MappedRecording with_channel_map(MappedRecording mapped, const Recording& log,

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/estimation/judgement/evidence.hpp"
 #include "veridyn/numerics/delay.hpp"
 #include "veridyn/recording/grid_signals.hpp"
@@ -96,14 +97,18 @@ std::string says(const DelayReport& report) {
   return text;
 }
 
-void DelayOptions::read_keys(const StudyTable& table, const std::vector<DelayGroup>& groups) {
-  automatic = table.flag_or("automatic", automatic);
-  max_delay_s = table.positive_or("max", "s", max_delay_s);
-  min_delay_s = table.number_or("min", "s", min_delay_s);
-  band_Hz = table.positive_or("band", "Hz", band_Hz);
-  for (const DelayGroup& group : groups) {
-    if (table.has(group.name)) given.emplace_back(group.name, table.number(group.name, "s"));
-  }
+KeyTable<DelayOptions> DelayOptions::keys(const std::vector<DelayGroup>& groups) {
+  using O = DelayOptions;
+  KeyTable<O> table("delays", "How sensors are brought onto one clock.");
+  table.flag("automatic", &O::automatic, "delays are estimated and removed; `false`: only those that the study gives")
+      .number("max", &O::max_delay_s, "s", kPositive, "searched up to here")
+      .number("min", &O::min_delay_s, "s", kAnyNumber, "smaller ones are left alone")
+      .number("band", &O::band_Hz, "Hz", kPositive, "signals are compared below this frequency");
+  for (const DelayGroup& group : groups)
+    table.other(
+        {group.name, "s", "", "estimated", fmt::format("of {}", fmt::join(group.channels, ", ")), true},
+        [](const StudyTable& t, const std::string& key, O& o) { o.given.emplace_back(key, t.number(key, "s")); });
+  return table;
 }
 
 std::optional<double> DelayOptions::given_for(std::string_view group) const {

@@ -20,17 +20,16 @@ struct DelayGroup {
   std::vector<std::string> channels;
 };
 
-/// How sensors are brought onto one clock. Study table `[delays]`; every key is optional.
+/// How sensors are brought onto one clock. Study table `[delays]`.
 struct DelayOptions {
-  bool automatic = true;      ///< `automatic`: estimate and remove; false: only what the study gives
-  double max_delay_s = 0.3;   ///< `max`: searched up to here
-  double min_delay_s = 0.01;  ///< `min`: smaller ones are left alone
-  double band_Hz = 4.0;       ///< `band`: signals are compared below this frequency
-  /// Given by the user, by the name of the group [s].
-  std::vector<std::pair<std::string, double>> given;
+  bool automatic = true;  ///< false: only what the study gives
+  double max_delay_s = 0.3;
+  double min_delay_s = 0.01;
+  double band_Hz = 4.0;
+  std::vector<std::pair<std::string, double>> given;  ///< by the name of the group [s]
 
-  /// Takes the keys that are there, with one for each group. @throws InputError for values that make no sense.
-  void read_keys(const StudyTable& table, const std::vector<DelayGroup>& groups);
+  /// With a key for each of the groups.
+  [[nodiscard]] static KeyTable<DelayOptions> keys(const std::vector<DelayGroup>& groups);
   [[nodiscard]] std::optional<double> given_for(std::string_view group) const;
 };
 

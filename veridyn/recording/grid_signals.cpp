@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/numerics/noise.hpp"
 
 namespace veridyn::recording {
@@ -70,6 +71,15 @@ GivenNoise read_noise(const StudyTable& table, std::span<const StandardChannel> 
     if (table.has(channel.name)) given.emplace_back(channel.name, table.positive(channel.name, channel.unit));
   }
   return given;
+}
+
+StudyKey noise_key(std::string otherwise) {
+  return {"noise",
+          "SI",
+          "by the standard names of channels",
+          std::move(otherwise),
+          "standard deviation of a channel's white noise per sample",
+          true};
 }
 
 std::optional<double> given_noise(const GivenNoise& given, std::string_view channel) {

@@ -104,6 +104,9 @@ using GivenNoise = std::vector<std::pair<std::string, double>>;
 /// @throws InputError for values that are not > 0 or of another kind of unit.
 [[nodiscard]] GivenNoise read_noise(const StudyTable& table, std::span<const StandardChannel> channels);
 
+/// The key `noise` of a table `[signals]`, of which `read_noise` reads what it holds.
+[[nodiscard]] StudyKey noise_key(std::string otherwise);
+
 /// What was given for a channel, if anything.
 [[nodiscard]] std::optional<double> given_noise(const GivenNoise& given, std::string_view channel);
 

@@ -10,6 +10,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/io/packets/known_packets.hpp"
 #include "veridyn/io/read.hpp"
 #include "veridyn/io/tables/csv_folder.hpp"
@@ -31,32 +32,43 @@ void merge(Recording& whole, const Recording& part, const std::string& prefix) {
   if (part.frame != Frame::kUnspecified) whole.frame = part.frame;
 }
 
-/// How a table is written.
-void read_style(const StudyTable& data, io::TableOptions& options) {
-  if (data.has("delimiter")) {
-    const std::vector<std::string> names{"comma", "semicolon", "tab", "blank"};
-    const std::string name = data.choice_or("delimiter", names, "comma");
-    options.delimiter = name == "comma" ? ',' : name == "semicolon" ? ';' : name == "tab" ? '\t' : ' ';
-  }
-  if (data.has("decimal")) {
-    const std::vector<std::string> names{"point", "comma"};
-    options.decimal = data.choice_or("decimal", names, "point") == "comma" ? ',' : '.';
-  }
-  if (!data.has("part")) return;
-  const long long part = data.integer("part");
-  if (part < 1) data.fail("part", fmt::format("= {} must be 1 or more", part));
-  options.part = static_cast<std::size_t>(part);
+/// Where the stamps of a table are.
+const KeyTable<io::TableOptions>& time_keys() {
+  using O = io::TableOptions;
+  static const auto table =
+      KeyTable<O>(
+          "time",
+          "For tables that do not say where their stamps are; of some of several tables by their names, `GPS = { "
+          "column = \"T\", unit = \"ms\" }`.")
+          .text("column", &O::time_column, "with the stamps")
+          .otherwise("found by its name")
+          .text("unit", &O::time_unit, "of the stamps")
+          .otherwise("of the header, else by how far rows are apart")
+          .number("rate", &O::rate, "Hz", kPositive, "of the rows of a table that has no stamps")
+          .otherwise("none")
+          .check([](const StudyTable& t, O&) {
+            if (t.has("rate") && t.has("column"))
+              t.fail("rate", "is for tables without stamps; `column` names their column");
+          });
+  return table;
 }
 
-/// Where the stamps of a table are.
+/// Reads the keys of all tables; a name of a table may be "rate" too.
 void read_time(const StudyTable& time, io::TableOptions& options) {
-  const bool named = time.has("column") && !time.is_table("column");
-  if (named) options.time_column = time.text("column");
-  if (time.has("unit") && !time.is_table("unit")) options.time_unit = time.text("unit");
-  if (time.has("rate") && !time.is_table("rate")) {
-    if (named) time.fail("rate", "is for tables without stamps; `column` names their column");
-    options.rate = time.positive("rate", "Hz");
+  for (const char* key : {"column", "unit", "rate"})
+    if (time.has(key) && time.is_table(key)) return;
+  time_keys().read(time, options);
+}
+
+/// `packet`: a name, or a table that describes one.
+void read_packet(const StudyTable& data, const std::string& key, RecordingKeys& keys) {
+  if (data.is_table(key)) {
+    keys.packet = io::read_packet_layout(data.table(key));
+    return;
   }
+  std::vector<std::string> names;
+  for (const io::PacketLayout& layout : io::known_packets()) names.push_back(layout.name);
+  keys.packet = io::known_packet(data.choice_or(key, names, ""));
 }
 
 }  // namespace
@@ -113,36 +125,49 @@ Recording cut(const Recording& recording, TimeSpan span) {
   return result;
 }
 
-namespace {
-
-/// `packet`: a name, or a table that describes one.
-std::optional<io::PacketLayout> read_packet(const StudyTable& data) {
-  if (!data.has("packet")) return std::nullopt;
-  if (data.is_table("packet")) return io::read_packet_layout(data.table("packet"));
-  std::vector<std::string> names;
-  for (const io::PacketLayout& layout : io::known_packets()) names.push_back(layout.name);
-  return io::known_packet(data.choice_or("packet", names, ""));
+const KeyTable<RecordingKeys>& RecordingKeys::keys() {
+  using K = RecordingKeys;
+  const auto csv = [](auto member) {
+    return [member](K & k) -> auto& { return k.csv.*member; };
+  };
+  using T = io::TableOptions;
+  static const auto table =
+      KeyTable<K>("data")
+          .other({"file", "", "a file", "", "one log of any known format, or a folder of arrays", true},
+                 [](const StudyTable& t, const std::string& key, K& k) { k.files = t.files(key); })
+          .files("files", &K::files, "or the tables of one recording on one clock")
+          .number("from", &K::from, "s", kAnyNumber, "only this part, on the log's clock")
+          .number("to", &K::to, "s", kAnyNumber, "and up to here")
+          .count("part", csv(&T::part), 1, 1'000'000, "of a file that holds several recordings")
+          .otherwise("all, or the longest of a table whose clock restarts")
+          .texts("columns", csv(&T::columns), "names, `name` or `name[unit]`, of the columns of a table without header")
+          .choice("delimiter", csv(&T::delimiter), {{"comma", ','}, {"semicolon", ';'}, {"tab", '\t'}, {"blank", ' '}},
+                  "between the cells of a table")
+          .otherwise("as its rows show")
+          .choice("decimal", csv(&T::decimal), {{"point", '.'}, {"comma", ','}}, "of the numbers of a table")
+          .otherwise("as its rows show")
+          .other({"packet", "", "a name, or a table that describes one", "by the content",
+                  "the file holds packets of telemetry, one after the other", true},
+                 read_packet)
+          .within("time", time_keys(),
+                  [](const StudyTable& t, K& k) {
+                    if (t.has("time")) k.time = t.table("time");
+                  })
+          .check([](const StudyTable& t, K& k) {
+            if (!(k.from < k.to)) t.fail("to", fmt::format("= {} s must be later than from = {} s", k.to, k.from));
+          });
+  return table;
 }
-
-}  // namespace
 
 namespace {
 
 /// How to read one file, with the keys that `own` has and else those of `shared`.
 io::ReadOptions read_options(const std::filesystem::path& path, const StudyTable& own, const StudyTable& shared) {
-  const StudyTable time = table_with("time", own, shared).table_or_empty("time");
-  const StudyTable& columns = table_with("columns", own, shared);
+  RecordingKeys keys;
+  for (const StudyTable* table : {&shared, &own}) RecordingKeys::keys().read(*table, keys);
   const std::string name = io::table_name(path);
-  io::ReadOptions options;
-  for (const StudyTable* table : {&shared, &own}) read_style(*table, options.csv);
-  if (columns.has("columns")) options.csv.columns = columns.texts("columns");
-  if (time.has(name)) {
-    read_time(time.table(name), options.csv);
-  } else {
-    read_time(time, options.csv);
-  }
-  options.packet = read_packet(table_with("packet", own, shared));
-  return options;
+  read_time(keys.time.has(name) ? keys.time.table(name) : keys.time, keys.csv);
+  return {.csv = keys.csv, .packet = keys.packet};
 }
 
 /// One file, read as these say.
@@ -152,23 +177,26 @@ Recording read_file(const std::filesystem::path& path, const StudyTable& own, co
   return io::read_recording(path, options);
 }
 
+/// What a `[[data.run]]` has beside the keys of a recording.
+struct RunKeys {
+  bool held_out = false;
+};
+
+const KeyTable<RunKeys>& run_keys() {
+  static const auto table =
+      KeyTable<RunKeys>("run", "A recording that needs keys of its own, in place of those of `[data]`.")
+          .flag("holdout", &RunKeys::held_out, "never used by identification");
+  return table;
+}
+
 /// Reads the keys of one recording, or of all, without opening a file.
-void check_recording_keys(const StudyTable& data, std::span<const StandardChannel> standard) {
-  for (const char* key : {"file", "files", "columns"}) {
-    if (data.has(key)) static_cast<void>(data.texts(key));
-  }
-  for (const char* key : {"from", "to"}) static_cast<void>(data.optional_number(key, "s"));
-  static_cast<void>(read_packet(data));
-  const StudyTable time = data.table_or_empty("time");
+void check_recording_keys(const StudyTable& data, const RecordingKeys& keys,
+                          std::span<const std::filesystem::path> files, std::span<const StandardChannel> standard) {
   io::TableOptions options;
-  read_time(time, options);
-  read_style(data, options);
-  for (const char* key : {"file", "files", "runs", "holdout_runs"}) {
-    if (!data.has(key)) continue;
-    for (const std::filesystem::path& path : data.files(key)) {
-      const std::string name = io::table_name(path);
-      if (time.has(name)) read_time(time.table(name), options);
-    }
+  read_time(keys.time, options);
+  for (const std::filesystem::path& path : files) {
+    const std::string name = io::table_name(path);
+    if (keys.time.has(name)) read_time(keys.time.table(name), options);
   }
   check_channel_map(data.table_or_empty("map"), standard);
 }
@@ -198,10 +226,8 @@ Recording read_one(const StudyTable& data, const StudyTable& shared, int threads
   const bool bounded = data.has("from") || data.has("to");
   whole = without_missing(whole);
   if (!bounded) return whole;
-  const double from = data.number_or("from", "s", -kInfinity);
-  const double to = data.number_or("to", "s", kInfinity);
-  if (!(from < to)) data.fail("to", fmt::format("= {} s must be later than from = {} s", to, from));
-  return cut(whole, {from, to});
+  const RecordingKeys keys = RecordingKeys::keys().read(data);
+  return cut(whole, {keys.from, keys.to});
 }
 
 /// The files of a table, and what they are called together: "flight1.csv", "IMU.csv, GPS.csv".
@@ -236,7 +262,7 @@ std::vector<StudyRecording> named_runs(const StudyTable& data) {
       table.fail(table.has("file") ? "files" : "file", "is missing: give `file`, or `files` of one run (not both)");
     runs.push_back(named_files(table.files(table.has("file") ? "file" : "files")));
     runs.back().own = table;
-    runs.back().held_out = table.flag_or("holdout", false);
+    runs.back().held_out = run_keys().read(table).held_out;
   }
   add_all("holdout_runs", true);
   return runs;
@@ -270,6 +296,17 @@ const StudyTable& table_with(std::string_view key, const StudyTable& own, const 
   return own.has(key) ? own : shared;
 }
 
+const KeyTable<DataKeys>& DataKeys::keys() {
+  using K = DataKeys;
+  static const auto table = KeyTable<K>("data", "The recording, or several of the same thing.")
+                                .with(RecordingKeys::keys())
+                                .files("runs", &K::runs, "several recordings, for each of which all keys here are")
+                                .files("holdout_runs", &K::holdout_runs, "likewise, never used by identification")
+                                .tables("run", run_keys(), [](const StudyTable&, K&) {})
+                                .table("map", &K::map, ChannelMap::keys());
+  return table;
+}
+
 bool names_runs(const StudyTable& data) { return data.has("runs") || data.has("holdout_runs") || data.has("run"); }
 
 io::ReadOptions read_study_options(const StudyTable& data, const std::filesystem::path& path) {
@@ -283,10 +320,14 @@ Recording read_study_file(const StudyTable& data, const std::filesystem::path& p
 Recording read_study_data(const StudyTable& data, int threads) { return read_one(data, data, threads); }
 
 void check_study_data(const StudyTable& data, std::span<const StandardChannel> standard) {
-  check_recording_keys(data, standard);
+  const DataKeys keys = DataKeys::keys().read(data);
+  std::vector<std::filesystem::path> files = keys.files;
+  for (const auto* more : {&keys.runs, &keys.holdout_runs}) files.insert(files.end(), more->begin(), more->end());
+  check_recording_keys(data, keys, files, standard);
   for (const StudyTable& run : data.tables("run")) {
-    check_recording_keys(run, standard);
-    static_cast<void>(run.flag_or("holdout", false));
+    const RecordingKeys own = RecordingKeys::keys().read(run);
+    check_recording_keys(run, own, own.files, standard);
+    static_cast<void>(run_keys().read(run));
   }
 }
 

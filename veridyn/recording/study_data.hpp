@@ -1,11 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/recording.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/io/read.hpp"
@@ -13,19 +15,27 @@
 
 namespace veridyn::recording {
 
-/// The recording that a study's `[data]` names:
-///
-///     file  = "flight.bin"                    # one log of any known format (or folder of arrays), or
-///     files = ["IMU.csv", "GPS.csv"]          # the tables of one flight on one clock
-///     from = 342, to = 850                    # [s] only this part, on the log's clock
-///     columns = ["time", "steer[rad]"]        # names of the columns of a table that has no header
-///     time = { column = "T", unit = "ms" }    # for a table that does not say where its stamps are, or
-///     time = { rate = "10 Hz" }               # that has none
-///     packet = "outsim"                       # the file holds packets of telemetry, one after the other; their kind
-///                                             # where the content does not tell it, or [data.packet] of one's own
-///                                             # (io/packets/packet_layout.hpp)
-///     [data.time]                             # the same for some of several tables
-///     GPS = { column = "T", unit = "ms" }
+/// What a study says of one recording: its files, the part of them, and how they are written. Keys of `[data]` and
+/// `[[data.run]]`.
+struct RecordingKeys {
+  std::vector<std::filesystem::path> files;  ///< one log, or the tables of one recording on one clock
+  double from = -kInfinity, to = kInfinity;  ///< on the log's clock [s]
+  io::TableOptions csv;
+  StudyTable time = StudyTable();  ///< where the stamps of tables are, of all or by their names
+  std::optional<io::PacketLayout> packet;
+
+  [[nodiscard]] static const KeyTable<RecordingKeys>& keys();
+};
+
+/// All of `[data]`, with what names several recordings.
+struct DataKeys : RecordingKeys {
+  std::vector<std::filesystem::path> runs, holdout_runs;  ///< besides those of `[[data.run]]`
+  ChannelMap map;
+
+  [[nodiscard]] static const KeyTable<DataKeys>& keys();
+};
+
+/// The recording that a study's `[data]` names.
 ///
 /// With several files the channels of each carry its name as a prefix, `IMU.AccX`; the instance that ulog2csv appends
 /// is dropped, so that `vehicle_attitude_0.csv` gives `vehicle_attitude.q[0]` as the log itself would. Keys of other
@@ -43,16 +53,7 @@ struct StudyRecording {
   bool held_out = false;  ///< never used by identification
 };
 
-/// All recordings that `[data]` names: one, as `read_study_data` reads it, or several of the same thing:
-///
-///     runs = ["flight1.csv", "flight2.csv"]   # alike: every key of [data] and [data.map] is for each of them
-///     holdout_runs = ["flight3.csv"]          # the same, never used by identification
-///     [[data.run]]                            # one that needs keys of its own
-///     file = "flight4.csv"                    # or files, as above
-///     from = 12, to = 300                     # [s] on its own clock
-///     holdout = true                          # as holdout_runs
-///     columns, time, packet, map, ...         # in place of those of [data]
-///
+/// All recordings that `[data]` names: one, as `read_study_data` reads it, or several of the same thing,
 /// in the order `runs`, `[[data.run]]`, `holdout_runs`.
 /// @throws InputError as `read_study_data`, naming the file; for a recording that is named twice, and where no
 /// recording is left to identify from
@@ -68,9 +69,7 @@ struct StudyRecording {
 /// recording, so that they refuse a misspelt key too. @throws InputError for values of the wrong kind.
 void check_study_data(const StudyTable& data, std::span<const StandardChannel> standard);
 
-/// How `[data]` says that a file is to be read: `time`, `columns`, `delimiter` (",", ";", "tab", "blank"), `decimal`
-/// (".",
-/// ","), `part` (of a log of several, from 1), `packet`. @throws InputError for values of the wrong kind.
+/// How `[data]` says that a file is to be read. @throws InputError for values of the wrong kind.
 [[nodiscard]] io::ReadOptions read_study_options(const StudyTable& data, const std::filesystem::path& path);
 
 /// One file, read as `[data.time]` says; for domains whose `[data]` names files under other keys.

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/numerics/batches/fingerprint.hpp"
 #include "veridyn/vehicle/model/changed_vehicle.hpp"
 
@@ -212,7 +213,8 @@ DriveSensitivityStudy read_drive_sensitivity(const StudyTable& root, const Progr
   study.options = estimation::read_index_options(table, study.drive.seed);
   if (study.options.method == estimation::IndexMethod::kNone)
     table.fail("method", "= \"none\" leaves nothing to compute; take \"variance\" or \"morris\"");
-  study.inputs = estimation::read_index_inputs(table, numbers_of(p), default_inputs(study.drive.model, p));
+  study.inputs = estimation::index_inputs(estimation::GivenInputs::keys().read(table), numbers_of(p),
+                                          default_inputs(study.drive.model, p));
   check_inputs(study.inputs, p);
   return study;
 }

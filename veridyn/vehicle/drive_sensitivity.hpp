@@ -20,7 +20,7 @@ struct DriveSensitivityStudy {
 
 /// Reads the drive (`read_simulation_study`) and
 ///
-///     [sensitivity]              # `read_index_options`, `read_index_inputs`
+///     [sensitivity]              # IndexOptions, GivenInputs
 ///
 /// where what may vary are the numbers of `kVehicleFields` that are finite, and `cg_position` [m]: the distance of the
 /// centre of gravity behind the front axle at the same wheelbase (a and b each change it). Without inputs: what the

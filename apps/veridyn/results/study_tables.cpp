@@ -24,16 +24,16 @@ void finish_flight_study(const StudyTable& root) {
   if (root.has("data")) {
     const StudyTable data = root.table("data");
     recording::check_study_data(data, aircraft::standard_channels());
-    if (data.has("calibration")) static_cast<void>(data.file("calibration"));
+    static_cast<void>(aircraft::FlightDataKeys::keys().read(data));
   }
-  static_cast<void>(aircraft::DelayAlignment::read(root.table_or_empty("delays")));
-  static_cast<void>(aircraft::ReconstructOptions::read(root.table_or_empty("reconstruct")));
-  static_cast<void>(aircraft::SignalOptions::read(root.table_or_empty("signals")));
-  static_cast<void>(aircraft::SegmentOptions::read(root.table_or_empty("segments")));
-  static_cast<void>(aircraft::IdentifyOptions::read(root.table_or_empty("identify")));
-  static_cast<void>(aircraft::ValidationOptions::read(root.table_or_empty("validate")));
-  static_cast<void>(aircraft::TrackOptions::read(root.table_or_empty("track")));
-  static_cast<void>(aircraft::UncertaintyOptions::read(root.table_or_empty("uncertainty")));
+  static_cast<void>(aircraft::DelayAlignment::keys().read(root.table_or_empty("delays")));
+  static_cast<void>(aircraft::ReconstructOptions::keys().read(root.table_or_empty("reconstruct")));
+  static_cast<void>(aircraft::SignalOptions::keys().read(root.table_or_empty("signals")));
+  static_cast<void>(aircraft::SegmentOptions::keys().read(root.table_or_empty("segments")));
+  static_cast<void>(aircraft::IdentifyOptions::keys().read(root.table_or_empty("identify")));
+  static_cast<void>(aircraft::ValidationOptions::keys().read(root.table_or_empty("validate")));
+  static_cast<void>(aircraft::TrackOptions::keys().read(root.table_or_empty("track")));
+  static_cast<void>(aircraft::UncertaintyOptions::keys().read(root.table_or_empty("uncertainty")));
   root.accept("sensitivity");
   root.finish();
 }

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/numerics/threads/parallel.hpp"
 
 namespace veridyn::aircraft {
@@ -93,7 +94,7 @@ class Settling {
 std::vector<TrackerSetting> read_trackers(const StudyTable& experiment) {
   std::vector<TrackerSetting> settings;
   for (const StudyTable& table : experiment.tables("tracker")) {
-    settings.push_back({table.text("name"), TrackOptions::read(table)});
+    settings.push_back({table.text("name"), TrackOptions::keys().read(table)});
   }
   return settings;
 }

@@ -14,7 +14,7 @@ struct TrackerSetting {
   std::string name;
   TrackOptions options;
 };
-/// @throws InputError as TrackOptions::read.
+/// @throws InputError as TrackOptions::keys.
 [[nodiscard]] std::vector<TrackerSetting> read_trackers(const StudyTable& experiment);
 
 /// What one tracker did in one repetition.

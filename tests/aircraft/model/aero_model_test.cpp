@@ -4,6 +4,7 @@
 
 #include "tests/support/refusal.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::aircraft {
@@ -150,7 +151,8 @@ TEST(AeroModel, GivesTheRegressionRowWhoseProductWithTheParametersIsTheCoefficie
 AeroModel read(std::string_view text, AeroModel base = {}) {
   const Study study = Study::parse(text, "s.toml");
   const StudyTable table = study.root().table("model");
-  AeroModel m = read_aero_model(table, std::move(base));
+  AeroModel m = std::move(base);
+  aero_model_keys().read(table, m);
   study.root().finish();
   return m;
 }
@@ -173,7 +175,7 @@ TEST(AeroModel, RefusesWrongModelsWithPlaceAndRule) {
   EXPECT_EQ(why([] { read("[model]\nCL = [\"1\", \"alhpa\"]\n"); }),
             "s.toml:2: model.CL: term 'alhpa': unknown variable 'alhpa' (did you mean 'alpha'?)");
   EXPECT_THAT(why([] { read("[model]\nCL = { alpha = 1, \"1*alpha\" = 2 }\n"); }), HasSubstr("is there twice"));
-  EXPECT_THAT(why([] { read("[model]\nCX = [\"1\"]\n"); }), HasSubstr("unknown coefficient"));
+  EXPECT_THAT(why([] { read("[model]\nCX = [\"1\"]\n"); }), HasSubstr("model.CX: unknown key"));
   EXPECT_THAT(why([] { read("[model]\nCL = 3\n"); }), HasSubstr("neither a list of terms"));
   EXPECT_THAT(why([] { read("[model]\nCL = []\n"); }), HasSubstr("has no terms"));
   EXPECT_THAT(why([] { read("[model]\nCL = { alpha = \"wide\" }\n"); }), HasSubstr("model.CL.alpha"));

@@ -70,18 +70,18 @@ TEST(Subject, WithoutInertiaIsASubjectWithoutMoments) {
 
 TEST(Subject, RefusesWrongValuesWithPlaceAndRule) {
   EXPECT_EQ(message("[subject]\nmass = 0\n"), "s.toml:2: subject.mass: = 0 must be > 0");
-  EXPECT_THAT(message("[subject]\nmass = 2\n"), HasSubstr("subject.wing_area: is missing"));
+  EXPECT_THAT(message("[subject]\nmass = 2\n"), HasSubstr("subject: wing_area, span, chord are missing"));
   EXPECT_THAT(message("[subject]\nbuiltin = \"unatrapp\"\n"),
               HasSubstr("s.toml:2: subject.builtin: unknown aircraft 'unatrapp' (did you mean 'unatrap'?)"));
   const std::string base(kGeometry);
   EXPECT_THAT(message(base + "inertia = { Jx = 1, Jy = 1, Jz = 1, Jxz = 1 }\n"), HasSubstr("not positive definite"));
   EXPECT_THAT(message(base + "inertia = { Jx = 1, Jy = 0, Jz = 1 }\n"),
               HasSubstr("subject.inertia.Jy: = 0 must be > 0"));
-  EXPECT_THAT(message(base + "imu_position = [1, 2]\n"), HasSubstr("has 2 numbers, expected 3"));
+  EXPECT_THAT(message(base + "imu_position = [1, 2]\n"), HasSubstr("has 2 numbers, needs 3"));
   EXPECT_THAT(message(base + "spann = 3\n"), HasSubstr("span"));
   EXPECT_THAT(message(base + "[subject.actuators.rudder]\nlower = 1\nupper = 0\n"), HasSubstr("is not below upper"));
   EXPECT_THAT(message(base + "[subject.actuators.flap]\nlower = 1\n"), HasSubstr("flap"));
-  EXPECT_THAT(message(base + "[subject.propulsion]\nkind = \"momentum\"\n"), HasSubstr("S_prop: is missing"));
+  EXPECT_THAT(message(base + "[subject.propulsion]\nkind = \"momentum\"\n"), HasSubstr("S_prop, k_motor are missing"));
   EXPECT_THAT(message(base + "[subject.propulsion]\nkind = \"polynomial\"\npolynomial = { thrust = 2 }\n"),
               HasSubstr("is not a product of throttle^i and Va^j"));
 }

@@ -6,6 +6,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/study.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -16,7 +17,7 @@ TEST(ReconstructOptions, ReadsEveryKeyAndRefusesWrongOnes) {
   const auto read = [](const char* text) {
     const Study study = Study::parse(text, "study.toml");
     const StudyTable table = study.root().table("reconstruct");
-    const ReconstructOptions o = ReconstructOptions::read(table);
+    const ReconstructOptions o = ReconstructOptions::keys().read(table);
     study.root().finish();
     return o;
   };
@@ -65,13 +66,13 @@ velocity = "0.2 s"
   EXPECT_THAT(message("[reconstruct]\nturbulense = \"auto\"\n"), HasSubstr("turbulence"));
   EXPECT_THAT(message("[reconstruct]\nestimate = [\"alfa_bias\"]\n"), HasSubstr("alpha_bias"));
   EXPECT_THAT(message("[reconstruct]\nmax_gap = \"-1 s\"\n"), HasSubstr("max_gap"));
-  EXPECT_THAT(message("[reconstruct]\nvane_position = [1, 2]\n"), HasSubstr("[x, y, z]"));
+  EXPECT_THAT(message("[reconstruct]\nvane_position = [1, 2]\n"), HasSubstr("has 2 numbers, needs 3"));
   EXPECT_THAT(message("[reconstruct.sigma]\nalpha = \"2 Pa\"\n"), HasSubstr("rad"));
 }
 
 TEST(ReconstructOptions, LeaveTurbulenceAndNoiseToTheDataByDefault) {
   const Study study = Study::parse("[reconstruct]\n", "study.toml");
-  const ReconstructOptions o = ReconstructOptions::read(study.root().table("reconstruct"));
+  const ReconstructOptions o = ReconstructOptions::keys().read(study.root().table("reconstruct"));
   EXPECT_FALSE(o.turbulence.has_value());
   EXPECT_EQ(o.sensors, NoiseSource::kMeasured);
 }
@@ -80,7 +81,7 @@ TEST(ReconstructOptions, TakeASpectrumOfNumbersUnderTheNameStudy) {
   const Study study = Study::parse(
       "[reconstruct]\nturbulence = { Lu = 300, Lv = 200, Lw = 50, sigma_u = 2, sigma_v = 2, sigma_w = 1 }\n",
       "study.toml");
-  const ReconstructOptions o = ReconstructOptions::read(study.root().table("reconstruct"));
+  const ReconstructOptions o = ReconstructOptions::keys().read(study.root().table("reconstruct"));
   ASSERT_TRUE(o.turbulence.has_value());
   EXPECT_EQ(o.turbulence->name, "study");
   EXPECT_EQ(o.turbulence->spectrum.Lu, 300.0);

@@ -10,6 +10,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::aircraft {
@@ -113,7 +114,7 @@ TEST_F(Calibration, TakesDynamicPressureFromSpeedAndDensity) {
                                        "\"\n[calibration.dynamic_pressure]\nraw = \"dp\"\nreference_speed = \"V\"\n"
                                        "static_pressure = \"p\"\nair_temperature = \"T\"\n",
                                    "s.toml");
-  const SensorFit fit = calibrate(CalibrationStudy::read(study.root().table("calibration"))).sensors[0];
+  const SensorFit fit = calibrate(CalibrationStudy::keys().read(study.root().table("calibration"))).sensors[0];
   // rho = 1e5/(287.05287 * 293.15) = 1.18836; at 20 m/s 237.67 Pa.
   EXPECT_NEAR(fit.reference[1], 237.672, 0.001);
   EXPECT_NEAR(fit.calibration.scale, 1.0, 1e-3);
@@ -188,7 +189,7 @@ TEST_F(Calibration, RefusesBadFilesInOneLine) {
     return message([&] {
       const Study study =
           Study::parse("[calibration]\nfile = \"" + path.string() + "\"\n[calibration.alpha]\n" + keys, "s");
-      static_cast<void>(calibrate(CalibrationStudy::read(study.root().table("calibration"))));
+      static_cast<void>(calibrate(CalibrationStudy::keys().read(study.root().table("calibration"))));
     });
   };
   const std::string keys = "raw = \"r\"\nreference = \"a\"\n";

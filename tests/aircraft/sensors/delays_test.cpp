@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "tests/aircraft/campaign/campaign.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -142,7 +143,7 @@ TEST(AlignDelays, StopsWhenItIsInterrupted) {
 
 TEST(AlignDelays, GivenOnesAreAppliedAndNothingElseWithoutTheAutomatic) {
   const Study study = Study::parse("[delays]\nautomatic = false\ngps = '50 ms'\n", "study.toml", ".");
-  const AlignedRecording aligned = align_delays(flight(), DelayAlignment::read(study.root().table("delays")));
+  const AlignedRecording aligned = align_delays(flight(), DelayAlignment::keys().read(study.root().table("delays")));
   ASSERT_EQ(aligned.delays.size(), 1u);
   EXPECT_EQ(aligned.delays[0].finding, recording::DelayFinding::kGiven);
   EXPECT_DOUBLE_EQ(aligned.mapped.recording.at("vel_east").times().front(), -0.05);

@@ -11,6 +11,7 @@
 #include "tests/support/folders.hpp"
 #include "veridyn/aircraft/model/subject.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -100,7 +101,7 @@ TEST(SwingTest, DeterminesXAndZOfTheRealSkywalkerAndNotY) {
   const fs::path data = test::shared_folder() / "data/flight/skywalker_stanford/pendulum";
   if (!fs::exists(data)) GTEST_SKIP() << "needs the recordings in " << data;
   const Study study = Study::load(real_study());
-  SwingTest test = SwingTest::read(study.root().table("swing_test"));
+  SwingTest test = SwingTest::keys().read(study.root().table("swing_test"));
   test.draws = 20000;
   for (SwingAxis& axis : test.axes) {
     for (auto* files : {&axis.files, &axis.cradle_files}) {
@@ -142,7 +143,7 @@ TEST(SwingTest, DeterminesXAndZOfTheRealSkywalkerAndNotY) {
 
 TEST(SwingTest, FindsTheInertiaOfTheExampleWithItsMadeRecordings) {
   const Study study = Study::load(test::source_folder() / "examples/studies/swing_test/study.toml");
-  SwingTest test = SwingTest::read(study.root().table("swing_test"));
+  SwingTest test = SwingTest::keys().read(study.root().table("swing_test"));
   Progress silent;
   const SwingTestResult result = analyse_swing_test(test, silent);
   const std::map<char, double> truth{{'x', 0.12}, {'y', 0.16}, {'z', 0.26}};
@@ -172,7 +173,7 @@ TEST(SwingTest, RefusesWhatItCannotUse) {
   const auto message = [](const std::string& text) -> std::string {
     try {
       const Study study = Study::parse(text, "s.toml");
-      static_cast<void>(SwingTest::read(study.root().table("swing_test")));
+      static_cast<void>(SwingTest::keys().read(study.root().table("swing_test")));
     } catch (const InputError& e) {
       return e.what();
     }

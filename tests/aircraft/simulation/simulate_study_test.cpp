@@ -36,9 +36,10 @@ TEST(SimulateStudy, ReadsEveryKeyAndRefusesWrongOnes) {
                 "50\nduration = 10\nbank = \"20 deg\"\n[sensors]\nset = \"perfect\"\n[sensors.gyro]\ntwo_sigma = "
                 "\"1 deg/s\"\nbias = [0.1, 0, 0]\nrate = 50\ndelay = 0.02\n[sensors.pitot]\nenabled = false\n"),
             "no error");
-  EXPECT_THAT(simulate_message(base + "[flight]\nduration = 0\n"), HasSubstr("flight.duration: = 0 must be > 0"));
-  EXPECT_THAT(simulate_message(base + "[flight]\nstep = 0.1\n"), HasSubstr("above 0.02 s"));
-  EXPECT_THAT(simulate_message(base + "[flight]\nwind = [1, 2]\n"), HasSubstr("has 2 numbers, expected 3"));
+  EXPECT_THAT(simulate_message(base + "[flight]\nduration = 0\n"),
+              HasSubstr("flight.duration: = 0 must be above 0 and at most 86400"));
+  EXPECT_THAT(simulate_message(base + "[flight]\nstep = 0.1\n"), HasSubstr("at most 0.02"));
+  EXPECT_THAT(simulate_message(base + "[flight]\nwind = [1, 2]\n"), HasSubstr("has 2 numbers, needs 3"));
   EXPECT_THAT(simulate_message(base + "[flight]\naltitude = 10\nground = 10\n"),
               HasSubstr("is not below the altitude"));
   EXPECT_THAT(simulate_message(base + "[flight]\nspeed = 10\n"), HasSubstr("speed"));
@@ -46,7 +47,7 @@ TEST(SimulateStudy, ReadsEveryKeyAndRefusesWrongOnes) {
               HasSubstr("unknown sensor (did you mean 'gyro'?)"));
   EXPECT_THAT(simulate_message(base + "[sensors.gyro]\nsigma = \"1 m\"\n"), HasSubstr("sensors.gyro.sigma"));
   EXPECT_THAT(simulate_message(base + "[sensors.gyro]\nbias = [1, 2]\n"), HasSubstr("expected 1 or 3"));
-  EXPECT_THAT(simulate_message(base + "[sensors.gyro]\ndropout = 1\n"), HasSubstr("must be >= 0 and < 1"));
+  EXPECT_THAT(simulate_message(base + "[sensors.gyro]\ndropout = 1\n"), HasSubstr("must be at least 0 and below 1"));
   EXPECT_THAT(simulate_message(base + "[[flight.manoeuvre]]\nkind = \"loop\"\nstart = 1\n"), HasSubstr("kind"));
   EXPECT_THAT(
       simulate_message(base + "[[flight.manoeuvre]]\nkind = \"doublet\"\nstart = 1\nsurfaces = [\"elevater\"]\n"),

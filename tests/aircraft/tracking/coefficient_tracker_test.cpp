@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/support/refusal.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::aircraft {
@@ -46,7 +47,7 @@ TEST(CoefficientTracker, ComesToTheParametersOfItsModelUnderTheirNames) {
 }
 
 TrackOptions read_track(const std::string& text) {
-  return TrackOptions::read(Study::parse("[track]\n" + text, "study.toml").root().table("track"));
+  return TrackOptions::keys().read(Study::parse("[track]\n" + text, "study.toml").root().table("track"));
 }
 
 TEST(TrackOptions, AreReadFromTheStudy) {
@@ -70,7 +71,7 @@ TEST(TrackOptions, AreReadFromTheStudy) {
 TEST(TrackOptions, RefuseWhatContradictsItself) {
   const auto refusal = [](const std::string& text) { return why([&] { static_cast<void>(read_track(text)); }); };
   EXPECT_EQ(refusal("coefficients = [\"Cx\"]"),
-            "study.toml:2: track.coefficients: 'Cx' is not a coefficient (did you mean 'CL'?)");
+            "study.toml:2: track.coefficients: 'Cx' is unknown (did you mean 'CL'?)");
   EXPECT_THAT(refusal("start_model = \"none\""), HasSubstr("is only for filter = \"guarded\""));
   EXPECT_THAT(refusal("filter = \"guarded\"\nair_data = \"sensors\""), HasSubstr("contradicts air_data"));
   EXPECT_THAT(refusal("filter = \"guarded\"\ncoefficients = [\"Cm\"]"), HasSubstr("lists none of them"));

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::estimation {
@@ -90,7 +91,7 @@ TEST(GuardOptions, RefusesWhatMakesNoSense) {
   const auto message = [](const char* text) -> std::string {
     try {
       const Study study = Study::parse(text, "study.toml");
-      static_cast<void>(GuardOptions::read(study.root().table("guard")));
+      static_cast<void>(GuardOptions::keys().read(study.root().table("guard")));
       study.root().finish();
     } catch (const InputError& e) {
       return e.what();

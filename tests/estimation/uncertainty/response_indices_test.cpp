@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/numerics/batches/block_store.hpp"
 
 namespace veridyn::estimation {
@@ -121,8 +122,8 @@ const std::vector<IndexInput> kKnown{{.name = "mass", .unit = "kg", .nominal = 1
 
 std::vector<IndexInput> inputs_of(const std::string& text) {
   const std::vector<std::string> defaults{"mass", "C_f"};
-  return read_index_inputs(Study::parse("[sensitivity]\n" + text, "study.toml").root().table("sensitivity"), kKnown,
-                           defaults);
+  const Study study = Study::parse("[sensitivity]\n" + text, "study.toml");
+  return index_inputs(GivenInputs::keys().read(study.root().table("sensitivity")), kKnown, defaults);
 }
 
 std::string input_refusal(const std::string& text) {
@@ -156,7 +157,8 @@ TEST(IndexInputs, AreRefusedInOneLine) {
   EXPECT_THAT(input_refusal(input + "parameter = \"mass\"\nlow = 3\nhigh = 2"), HasSubstr("must be below high"));
   EXPECT_THAT(input_refusal(input + "parameter = \"mass\"\nlow = 3"), HasSubstr("a range has two ends"));
   EXPECT_THAT(input_refusal(input + "parameter = \"mass\"\nlow = 3\nhigh = 4\nrange = 0.1"), HasSubstr("exclude"));
-  EXPECT_THAT(input_refusal(input + "parameter = \"mass\"\nrange = 5"), HasSubstr("\"10 %\" is 0.1"));
+  EXPECT_THAT(input_refusal(input + "parameter = \"mass\"\nrange = 5"),
+              HasSubstr("range: = 5 must be between 0 and 1"));
   EXPECT_THAT(input_refusal(input + "parameter = \"K_b\""), HasSubstr("K_b is 0"));
   EXPECT_THAT(input_refusal(input + "parameter = \"mass\"\n" + input + "parameter = \"mass\""), HasSubstr("twice"));
   EXPECT_THAT(input_refusal(input + "range = 0.1"), HasSubstr("parameter"));

@@ -42,7 +42,7 @@ TEST(ResultIndices, AreReadWithTheirOptions) {
               HasSubstr("study.toml:2: sensitivity.index_samples: = 0 must be from 2"));
   EXPECT_THAT(index_refusal("trajectories = 0"), HasSubstr("sensitivity.trajectories"));
   EXPECT_THAT(index_refusal("levels = 3"), HasSubstr("must be even"));
-  EXPECT_THAT(index_refusal("level = 1"), HasSubstr("below 1"));
+  EXPECT_THAT(index_refusal("level = 1"), HasSubstr("between 0 and 1"));
   EXPECT_THAT(index_refusal("method = \"sobol\""), HasSubstr("variance"));
 }
 

@@ -9,6 +9,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/core/text.hpp"
 #include "veridyn/core/units.hpp"
 
@@ -210,14 +211,38 @@ CoefficientModel read_coefficient(const StudyTable& table, Coefficient c) {
   return model;
 }
 
-StallBlend read_stall(const StudyTable& table, const StallBlend& base, StallForm form) {
-  StallBlend stall = base;
-  stall.form = form;
-  stall.M = table.positive_or("M", "1/rad", base.M);
-  stall.alpha0 = table.positive_or("alpha0", "rad", base.alpha0);
-  if (stall.alpha0 >= 0.5 * kPi) table.fail("alpha0", "is not below 90 deg");
-  stall.drag = table.flag_or("drag", base.drag);
-  return stall;
+const KeyTable<StallBlend>& stall_keys() {
+  using S = StallBlend;
+  static const auto table =
+      KeyTable<S>("stall", "How a simulated model behaves beyond stall; without it the terms hold at every angle.")
+          .number("M", &S::M, "1/rad", kPositive, "sharpness")
+          .number("alpha0", &S::alpha0, "rad", kPositive,
+                  "angle of attack where half of the flow is separated, below 90 deg")
+          .other({"form", "", "`\"full\"`, `\"source\"`, `\"separation\"`, `\"none\"`", "\"full\"",
+                  "`full`: blends into a flat plate with every term; `source`: only constant and alpha are blended; "
+                  "`separation`: levels off as Kirchhoff's wing does; `none`: drops the blend of a built-in subject"},
+                 [](const StudyTable& t, const std::string& key, S& s) {
+                   const std::vector<std::string> forms = {"full", "source", "separation", "none"};
+                   const std::string form = t.choice_or(key, forms, "");
+                   if (form == "none") return;
+                   s.form = form == "full"     ? StallForm::kFull
+                            : form == "source" ? StallForm::kSource
+                                               : StallForm::kSeparation;
+                 })
+          .flag("drag", &S::drag, "whether drag is blended too")
+          .check([](const StudyTable& t, S& s) {
+            if (s.alpha0 >= 0.5 * kPi) t.fail("alpha0", "is not below 90 deg");
+          });
+  return table;
+}
+
+void read_stall(const StudyTable& model, AeroModel& m) {
+  if (!model.has("stall")) return;
+  const StudyTable table = model.table("stall");
+  StallBlend stall = m.stall.value_or(StallBlend{});
+  stall_keys().read(table, stall);
+  m.stall = stall;
+  if (table.text_or("form", "") == "none") m.stall.reset();
 }
 
 /// NaN values (unknown) are equal to each other.
@@ -368,32 +393,20 @@ CoefficientModel coefficient_model(Coefficient c, std::span<const std::pair<std:
   return model;
 }
 
-AeroModel read_aero_model(const StudyTable& table, AeroModel base) {
-  for (const std::string& key : table.keys()) {
-    if (key == "stall") continue;
-    const std::optional<Coefficient> c = find_coefficient(key);
-    if (!c) {
-      std::vector<std::string> known(kCoefficientNames.begin(), kCoefficientNames.end());
-      known.emplace_back("stall");
-      table.fail(key, fmt::format("unknown coefficient{}", suggestion(key, known)));
-    }
-    base.set(read_coefficient(table, *c));
-  }
-  if (table.has("stall")) {
-    const StudyTable stall = table.table("stall");
-    const std::vector<std::string> forms = {"full", "source", "separation", "none"};
-    const StallBlend start = base.stall.value_or(StallBlend{});
-    const std::string form = stall.choice_or("form", forms, name_of(start.form));
-    if (form == "none") {
-      base.stall.reset();
-    } else {
-      base.stall = read_stall(stall, start,
-                              form == "full"     ? StallForm::kFull
-                              : form == "source" ? StallForm::kSource
-                                                 : StallForm::kSeparation);
-    }
-  }
-  return base;
+const KeyTable<AeroModel>& aero_model_keys() {
+  static const auto table = [] {
+    KeyTable<AeroModel> keys("model",
+                             "The aerodynamic model (section 2). Each coefficient is a structure, `[\"1\", \"alpha\", "
+                             "\"q_n\", \"de\"]`, or has "
+                             "values too, `{ \"1\" = 0.29, alpha = 3.6, de = \"unknown\" }`, and replaces that of a "
+                             "built-in subject as a whole.");
+    for (const Coefficient c : enumerators<Coefficient, kCoefficients>())
+      keys.other({std::string(name_of(c)), "", "terms, with values or without", "not modelled",
+                  std::string(meaning_of(c)), true},
+                 [c](const StudyTable& t, const std::string&, AeroModel& m) { m.set(read_coefficient(t, c)); });
+    return keys.within("stall", stall_keys(), read_stall);
+  }();
+  return table;
 }
 
 std::string write_aero_model_toml(const AeroModel& model, std::string_view heading) {

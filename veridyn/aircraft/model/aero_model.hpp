@@ -192,20 +192,10 @@ struct AeroModel {
 [[nodiscard]] CoefficientModel coefficient_model(Coefficient c,
                                                  std::span<const std::pair<std::string_view, double>> terms);
 
-/// Reads `[subject.model]` over `base`: each key CL, CD, CY, Cl, Cm, Cn replaces that coefficient as a whole.
-///
-///     CL = { "1" = 0.2933, alpha = 3.607, q_n = 2.355, de = 0.0711 }    # values, 1/rad; "unknown" leaves one open
-///     Cm = ["1", "alpha", "q_n", "de"]                                  # the structure only
-///     [subject.model.stall]
-///     M = 50                # sharpness [1/rad]
-///     alpha0 = "27 deg"
-///     form = "full"         # full, source, separation, or none to drop the blend of a built-in subject
-///     drag = true           # whether drag is blended too
-///
-/// @throws InputError at the key: unknown term, the same term twice, a stall blend that is not positive.
-[[nodiscard]] AeroModel read_aero_model(const StudyTable& table, AeroModel base = {});
+/// Study table `[subject.model]`: each coefficient that it has replaces that of the object as a whole.
+[[nodiscard]] const KeyTable<AeroModel>& aero_model_keys();
 
-/// The model as TOML under the heading `[subject.model]`, to be read by `read_aero_model`.
+/// The model as TOML under the heading `[subject.model]`.
 [[nodiscard]] std::string write_aero_model_toml(const AeroModel& model, std::string_view heading = "subject.model");
 
 // ---------------------------------------------------------------------------------------------------------------------

@@ -7,6 +7,7 @@
 #include <charconv>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::aircraft {
 
@@ -25,6 +26,9 @@ std::string_view kind_name(PropulsionKind kind) {
   }
   return {};
 }
+
+constexpr std::array kKinds{PropulsionKind::kNone, PropulsionKind::kPolynomial, PropulsionKind::kMomentum,
+                            PropulsionKind::kPropeller};
 
 /// Reads "throttle^i*Va^j".
 ThrustTerm parse_thrust_term(std::string_view text, double value, const std::string& place) {
@@ -70,54 +74,86 @@ std::string thrust_term_text(const ThrustTerm& t) {
   return factors.empty() ? "1" : fmt::format("{}", fmt::join(factors, "*"));
 }
 
-std::array<double, 3> vector3(const StudyTable& table, std::string_view key, std::string_view unit,
-                              const std::array<double, 3>& otherwise) {
-  if (!table.has(key)) return otherwise;
-  const std::vector<double> v = table.numbers(key, unit);
-  if (v.size() != 3) table.fail(key, fmt::format("has {} numbers, expected 3: [x, y, z]", v.size()));
-  return {v[0], v[1], v[2]};
+void read_kind(const StudyTable& table, const std::string& key, Propulsion& p) {
+  std::vector<std::string> names;
+  for (const PropulsionKind kind : kKinds) names.emplace_back(kind_name(kind));
+  const std::string chosen = table.choice_or(key, names, "");
+  for (const PropulsionKind kind : kKinds)
+    if (kind_name(kind) == chosen && kind != p.kind) p = Propulsion{.kind = kind};
+}
+
+void read_polynomial(const StudyTable& table, const std::string& key, Propulsion& p) {
+  const StudyTable terms = table.table(key);
+  p.polynomial.clear();
+  for (const std::string& term : terms.keys())
+    p.polynomial.push_back(parse_thrust_term(term, terms.number(term, "1"), terms.place(term)));
+}
+
+/// Refuses keys of other kinds, and wants what its kind cannot do without.
+void check_kind(const StudyTable& table, Propulsion& p) {
+  const auto refuse = [&](PropulsionKind kind, std::initializer_list<const char*> keys) {
+    for (const char* key : keys)
+      if (p.kind != kind && table.has(key))
+        table.fail(key, fmt::format("is of kind \"{}\", but the kind is \"{}\"", kind_name(kind), kind_name(p.kind)));
+  };
+  refuse(PropulsionKind::kPolynomial, {"polynomial"});
+  refuse(PropulsionKind::kMomentum, {"S_prop", "C_prop", "k_motor", "k_tp", "k_omega"});
+  refuse(PropulsionKind::kPropeller, {"diameter", "omega_max", "time_constant", "CT", "CP", "J_max", "rotation"});
+  std::vector<std::string> missing;
+  const auto want = [&](PropulsionKind kind, const char* key, bool there) {
+    if (p.kind == kind && !there) missing.emplace_back(key);
+  };
+  want(PropulsionKind::kPolynomial, "polynomial", !p.polynomial.empty());
+  want(PropulsionKind::kMomentum, "S_prop", p.S_prop > 0.0);
+  want(PropulsionKind::kMomentum, "k_motor", p.k_motor > 0.0);
+  want(PropulsionKind::kPropeller, "diameter", p.diameter > 0.0);
+  want(PropulsionKind::kPropeller, "omega_max", p.omega_max > 0.0);
+  want(PropulsionKind::kPropeller, "CT", !p.CT.empty());
+  want(PropulsionKind::kPropeller, "CP", !p.CP.empty());
+  refuse_missing(table, missing);
+  if (std::abs(p.rotation) != 1.0) table.fail("rotation", fmt::format("= {:g} must be 1 or -1", p.rotation));
 }
 
 }  // namespace
 
-Propulsion read_propulsion(const StudyTable& table, const Propulsion& base) {
-  Propulsion p = base;
-  const std::vector<std::string> kinds = {"none", "polynomial", "momentum", "propeller"};
-  const std::string kind = table.choice_or("kind", kinds, kind_name(base.kind));
-  if (table.has("kind") && kind != kind_name(base.kind)) p = Propulsion{};
-  p.position = vector3(table, "position", "m", p.position);
-  if (kind == "polynomial") {
-    p.kind = PropulsionKind::kPolynomial;
-    if (table.has("polynomial")) {
-      p.polynomial.clear();
-      const StudyTable terms = table.table("polynomial");
-      for (const std::string& key : terms.keys()) {
-        p.polynomial.push_back(parse_thrust_term(key, terms.number(key, "1"), terms.place(key)));
-      }
-    }
-    if (p.polynomial.empty())
-      table.fail("polynomial", "is missing or empty: a polynomial needs terms, { throttle = 30 }");
-  } else if (kind == "momentum") {
-    p.kind = PropulsionKind::kMomentum;
-    p.S_prop = p.S_prop > 0.0 ? table.positive_or("S_prop", "m^2", p.S_prop) : table.positive("S_prop", "m^2");
-    p.C_prop = table.positive_or("C_prop", "1", p.C_prop);
-    p.k_motor = p.k_motor > 0.0 ? table.positive_or("k_motor", "m/s", p.k_motor) : table.positive("k_motor", "m/s");
-    p.k_tp = table.number_or("k_tp", "1", p.k_tp);
-    p.k_omega = table.number_or("k_omega", "rad/s", p.k_omega);
-  } else if (kind == "propeller") {
-    p.kind = PropulsionKind::kPropeller;
-    p.diameter = p.diameter > 0.0 ? table.positive_or("diameter", "m", p.diameter) : table.positive("diameter", "m");
-    p.omega_max =
-        p.omega_max > 0.0 ? table.positive_or("omega_max", "rad/s", p.omega_max) : table.positive("omega_max", "rad/s");
-    p.time_constant = table.number_or("time_constant", "s", p.time_constant);
-    if (!(p.time_constant >= 0.0)) table.fail("time_constant", fmt::format("= {:g} must be >= 0", p.time_constant));
-    if (table.has("CT") || p.CT.empty()) p.CT = table.numbers("CT", "1");
-    if (table.has("CP") || p.CP.empty()) p.CP = table.numbers("CP", "1");
-    p.J_max = table.positive_or("J_max", "1", p.J_max);
-    p.rotation = table.number_or("rotation", "1", p.rotation);
-    if (std::abs(p.rotation) != 1.0) table.fail("rotation", fmt::format("= {:g} must be 1 or -1", p.rotation));
-  }
-  return p;
+const KeyTable<Propulsion>& propulsion_keys() {
+  using P = Propulsion;
+  static const auto table =
+      KeyTable<P>(
+          "propulsion",
+          "Where thrust comes from. `momentum`: T = rho/2 S_prop C_prop ((k_motor throttle)^2 - Va^2), not below "
+          "0, torque -k_tp (k_omega throttle)^2. `propeller`: T = rho n^2 D^4 CT(J), Q = rho n^2 D^5 CP(J)/(2 "
+          "pi), J = Va/(n D). Keys are those of the kind.")
+          .other({"kind", "", "`\"none\"`, `\"polynomial\"`, `\"momentum\"`, `\"propeller\"`", "\"none\"",
+                  "`none`: no engine, or thrust is recorded"},
+                 read_kind)
+          .numbers("position", &P::position, "m", kAnyNumber,
+                   "of the thrust line from the centre of gravity: forward, right, down")
+          .other({"polynomial", "N, m/s", "`{ throttle = 30, \"throttle*Va\" = -0.5, \"Va^2\" = -0.01 }`", "required",
+                  "polynomial: thrust; a negative sum counts as 0", true},
+                 read_polynomial)
+          .number("S_prop", &P::S_prop, "m^2", kPositive, "momentum: swept area")
+          .otherwise("required")
+          .number("C_prop", &P::C_prop, "1", kPositive, "momentum: efficiency")
+          .number("k_motor", &P::k_motor, "m/s", kPositive, "momentum: exit speed of the air at full throttle")
+          .otherwise("required")
+          .number("k_tp", &P::k_tp, "1", kAnyNumber, "momentum: torque constant, in N m s^2")
+          .number("k_omega", &P::k_omega, "rad/s", kAnyNumber, "momentum: rotor speed at full throttle")
+          .number("diameter", &P::diameter, "m", kPositive, "propeller: D")
+          .otherwise("required")
+          .number("omega_max", &P::omega_max, "rad/s", kPositive, "propeller: rotor speed at full throttle")
+          .otherwise("required")
+          .number("time_constant", &P::time_constant, "s", kNotNegative,
+                  "propeller: the rotor follows throttle * omega_max with this lag")
+          .numbers("CT", &P::CT, "1", kAnyNumber, "propeller: thrust coefficient, powers of J from 0")
+          .otherwise("required")
+          .numbers("CP", &P::CP, "1", kAnyNumber, "propeller: power coefficient, powers of J from 0")
+          .otherwise("required")
+          .number("J_max", &P::J_max, "1", kPositive, "propeller: the map ends here; larger J count as this")
+          .number("rotation", &P::rotation, "1", kAnyNumber,
+                  "propeller: 1 where it turns clockwise seen from behind, which rolls the body to the left; else -1")
+          .check(check_kind);
+  return table;
 }
 
 std::string write_propulsion_toml(const Propulsion& p, std::string_view heading) {

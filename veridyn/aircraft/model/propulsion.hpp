@@ -70,15 +70,9 @@ struct Propulsion {
   friend bool operator==(const Propulsion&, const Propulsion&) = default;
 };
 
-/// Reads `[subject.propulsion]` over `base`; with a key `kind` it starts from nothing.
-///
-///     kind = "none" | "polynomial" | "momentum" | "propeller"
-///     position = [-0.25, 0, 0]              # [m] from the centre of gravity
-///     polynomial = { throttle = 30, "throttle*Va" = -0.5, "Va^2" = -0.01 }   # [N, m/s]
-///     S_prop, C_prop, k_motor, k_tp, k_omega                     # momentum
-///     diameter, omega_max, time_constant, CT = [..], CP = [..], J_max, rotation   # propeller
-[[nodiscard]] Propulsion read_propulsion(const StudyTable& table, const Propulsion& base);
-/// The table that `read_propulsion` reads.
+/// Study table `[subject.propulsion]`; with a `kind` that is not the object's it starts from nothing.
+[[nodiscard]] const KeyTable<Propulsion>& propulsion_keys();
+/// That table.
 [[nodiscard]] std::string write_propulsion_toml(const Propulsion& propulsion,
                                                 std::string_view heading = "subject.propulsion");
 

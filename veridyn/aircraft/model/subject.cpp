@@ -4,78 +4,107 @@
 #include <fmt/ranges.h>
 
 #include <Eigen/Eigenvalues>
+#include <functional>
 
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/core/text.hpp"
 
 namespace veridyn::aircraft {
 
 namespace {
 
-std::array<double, 3> vector3(const StudyTable& table, std::string_view key, const std::array<double, 3>& otherwise) {
-  if (!table.has(key)) return otherwise;
-  const std::vector<double> v = table.numbers(key, "m");
-  if (v.size() != 3) table.fail(key, fmt::format("has {} numbers, expected 3: [x, y, z]", v.size()));
-  return {v[0], v[1], v[2]};
+const KeyTable<Inertia>& inertia_keys() {
+  static const auto table =
+      KeyTable<Inertia>("inertia",
+                        "Of an aircraft that is symmetric about its xz plane, about the centre of gravity. "
+                        "Without it moments are identified per unit inertia. One that breaks the triangle "
+                        "inequality of moments of inertia is kept with a warning.")
+          .number("Jx", &Inertia::Jx, "kg m^2", kPositive, "about the forward axis")
+          .required()
+          .number("Jy", &Inertia::Jy, "kg m^2", kPositive, "about the axis to the right")
+          .required()
+          .number("Jz", &Inertia::Jz, "kg m^2", kPositive, "about the axis down")
+          .required()
+          .number("Jxz", &Inertia::Jxz, "kg m^2", kAnyNumber, "product of inertia")
+          .check([](const StudyTable& t, Inertia& J) {
+            if (!J.positive_definite()) throw InputError(t.place(""), J.inadmissible());
+          });
+  return table;
 }
 
-double positive(const StudyTable& table, std::string_view key, std::string_view unit, double base) {
-  return base > 0.0 ? table.positive_or(key, unit, base) : table.positive(key, unit);
+const KeyTable<ReferenceLengths>& length_keys() {
+  using L = ReferenceLengths;
+  static const auto table = KeyTable<L>("reference_lengths",
+                                        "Lengths that make moments and rates dimensionless (section 2): definitions "
+                                        "without error, which numbers from elsewhere may need.")
+                                .number("roll", &L::roll, "m", kPositive, "of Cl and p_n")
+                                .otherwise("the span")
+                                .number("pitch", &L::pitch, "m", kPositive, "of Cm and q_n")
+                                .otherwise("the chord")
+                                .number("yaw", &L::yaw, "m", kPositive, "of Cn and r_n")
+                                .otherwise("the span");
+  return table;
 }
 
-Inertia read_inertia(const StudyTable& subject, std::vector<std::string>& warnings) {
-  const StudyTable table = subject.table("inertia");
-  Inertia J;
-  J.Jx = table.positive("Jx", "kg m^2");
-  J.Jy = table.positive("Jy", "kg m^2");
-  J.Jz = table.positive("Jz", "kg m^2");
-  J.Jxz = table.number_or("Jxz", "kg m^2", 0.0);
-  const std::string why = J.inadmissible();
-  if (!J.positive_definite()) subject.fail("inertia", why);
-  if (!why.empty()) warnings.push_back(fmt::format("{}: {}", subject.place("inertia"), why));
-  return J;
+const KeyTable<BodySigma>& sigma_keys() {
+  using S = BodySigma;
+  static const auto table =
+      KeyTable<S>("sigma",
+                  "Standard deviations of the aircraft's constants, as known from scales, drawings and swing "
+                  "tests: errors that all samples share, which widen the intervals of the derivatives.")
+          .number("mass", &S::mass, "kg", kNotNegative, "of the mass")
+          .number("wing_area", &S::wing_area, "m^2", kNotNegative, "of S")
+          .number("span", &S::span, "m", kNotNegative, "of b")
+          .number("chord", &S::chord, "m", kNotNegative, "of c")
+          .number("Jx", &S::Jx, "kg m^2", kNotNegative, "of each number of the inertia")
+          .number("Jy", &S::Jy, "kg m^2", kNotNegative, "")
+          .number("Jz", &S::Jz, "kg m^2", kNotNegative, "")
+          .number("Jxz", &S::Jxz, "kg m^2", kNotNegative, "");
+  return table;
 }
 
-ReferenceLengths read_reference_lengths(const StudyTable& table) {
-  const auto length = [&](std::string_view key) {
-    return table.has(key) ? std::optional(table.positive(key, "m")) : std::nullopt;
-  };
-  return {.roll = length("roll"), .pitch = length("pitch"), .yaw = length("yaw")};
+KeyTable<Actuator> actuator_keys(const std::string& name) {
+  using A = Actuator;
+  const bool throttle = name == "throttle";
+  KeyTable<A> table(name,
+                    throttle ? "Of the engine." : "Of a servo with what it moves; likewise `aileron` and `rudder`.");
+  table.number("lower", &A::lower, throttle ? "1" : "rad", kAnyNumber, "stop").otherwise(throttle ? "0" : "-`upper`");
+  table
+      .number("upper", &A::upper, throttle ? "1" : "rad", kAnyNumber,
+              throttle ? "stop" : "stop; also the full throw to which servo outputs are scaled")
+      .otherwise(throttle ? "1" : "0.35 rad")
+      .number("rate_limit", &A::rate_limit, throttle ? "1/s" : "rad/s", kPositive, "of simulations")
+      .otherwise("none")
+      .number("time_constant", &A::time_constant, "s", kNotNegative, "of simulations; 0 follows at once")
+      .number("delay", &A::delay, "s", from_to(0.0, 5.0), "of simulations")
+      .check([throttle](const StudyTable& t, A& a) {
+        if (!throttle && t.has("upper") && !t.has("lower")) a.lower = -a.upper;
+        if (!(a.lower < a.upper))
+          t.fail(t.has("lower") ? "lower" : "upper",
+                 fmt::format("lower stop {:g} is not below upper stop {:g}", a.lower, a.upper));
+      });
+  return table;
 }
 
-BodySigma read_body_sigma(const StudyTable& table) {
-  const auto sigma = [&](std::string_view key, std::string_view unit) {
-    const double value = table.number_or(key, unit, 0.0);
-    if (!(value >= 0.0)) table.fail(key, fmt::format("= {:g} must be >= 0", value));
-    return value;
-  };
-  return {.mass = sigma("mass", "kg"),
-          .wing_area = sigma("wing_area", "m^2"),
-          .span = sigma("span", "m"),
-          .chord = sigma("chord", "m"),
-          .Jx = sigma("Jx", "kg m^2"),
-          .Jy = sigma("Jy", "kg m^2"),
-          .Jz = sigma("Jz", "kg m^2"),
-          .Jxz = sigma("Jxz", "kg m^2")};
+void read_surfaces(const StudyTable& actuators, Subject& s) {
+  for (const auto& [name, surface] :
+       {std::pair{"elevator", &s.elevator}, std::pair{"aileron", &s.aileron}, std::pair{"rudder", &s.rudder}})
+    actuator_keys(name).read(actuators.table_or_empty(name), *surface);
 }
 
-Actuator read_actuator(const StudyTable& table, const Actuator& base, bool throttle) {
-  const std::string_view unit = throttle ? "1" : "rad";
-  const std::string_view rate = throttle ? "1/s" : "rad/s";
-  Actuator a = base;
-  a.upper = table.number_or("upper", unit, base.upper);
-  a.lower = table.number_or("lower", unit, !throttle && table.has("upper") ? -a.upper : base.lower);
-  if (!(a.lower < a.upper)) {
-    table.fail(table.has("lower") ? "lower" : "upper",
-               fmt::format("lower stop {:g} is not below upper stop {:g}", a.lower, a.upper));
-  }
-  if (table.has("rate_limit")) a.rate_limit = table.positive("rate_limit", rate);
-  a.time_constant = table.number_or("time_constant", "s", base.time_constant);
-  if (!(a.time_constant >= 0.0)) table.fail("time_constant", fmt::format("= {:g} must be >= 0", a.time_constant));
-  a.delay = table.number_or("delay", "s", base.delay);
-  if (!(a.delay >= 0.0 && a.delay <= 5.0)) table.fail("delay", fmt::format("= {:g} must be from 0 to 5 s", a.delay));
-  return a;
+void check(const StudyTable& table, Subject& s) {
+  std::vector<std::string> missing;
+  for (const auto& [key, value] : {std::pair{"mass", s.mass}, std::pair{"wing_area", s.wing_area},
+                                   std::pair{"span", s.span}, std::pair{"chord", s.chord}})
+    if (!(value > 0.0)) missing.emplace_back(key);
+  refuse_missing(table, missing);
+  if (s.name.empty()) s.name = "aircraft";
+  if (!table.has("inertia")) return;
+  s.warnings.clear();
+  if (const std::string why = s.inertia->inadmissible(); !why.empty())
+    s.warnings.push_back(fmt::format("{}: {}", table.place("inertia"), why));
 }
 
 std::string actuator_toml(std::string_view name, const Actuator& a) {
@@ -129,35 +158,47 @@ bool operator==(const Subject& a, const Subject& b) {
          a.elevator == b.elevator && a.aileron == b.aileron && a.rudder == b.rudder && a.throttle == b.throttle;
 }
 
+const KeyTable<Subject>& subject_keys() {
+  using S = Subject;
+  static const auto table =
+      KeyTable<S>("subject", "The aircraft: what is measured on the bench, and its model of aerodynamics.")
+          .other(
+              {"builtin", "", quoted_list(builtin_subject_names(), "`"), "none", "start from it; other keys override",
+               true},
+              [](const StudyTable& t, const std::string& key, S& s) { s = builtin_subject(t.text(key), t.place(key)); })
+          .text("name", &S::name, "of the aircraft")
+          .text("description", &S::description, "where the numbers are from")
+          .text("sign_convention", &S::sign_convention, "of deflections, in words (section 1)")
+          .number("mass", &S::mass, "kg", kPositive, "at take-off")
+          .otherwise("required without `builtin`")
+          .number("wing_area", &S::wing_area, "m^2", kPositive, "S")
+          .otherwise("required without `builtin`")
+          .number("span", &S::span, "m", kPositive, "b")
+          .otherwise("required without `builtin`")
+          .number("chord", &S::chord, "m", kPositive, "c, mean aerodynamic chord")
+          .otherwise("required without `builtin`")
+          .numbers("force_point", &S::force_point, "m", kAnyNumber,
+                   "where the aerodynamic force acts, from the centre of gravity: forward, right, down")
+          .numbers("imu_position", &S::imu_position, "m", kAnyNumber,
+                   "of the accelerometer from the centre of gravity: forward, right, down")
+          .whole_table("reference_lengths", &S::lengths, length_keys())
+          .whole_table("inertia", &S::inertia, inertia_keys())
+          .whole_table("sigma", &S::sigma, sigma_keys())
+          .table("model", &S::model, aero_model_keys())
+          .table("propulsion", &S::propulsion, propulsion_keys())
+          .table("actuators", std::identity(),
+                 KeyTable<S>("actuators")
+                     .within("elevator", actuator_keys("elevator"), read_surfaces)
+                     .table("throttle", &S::throttle, actuator_keys("throttle")))
+          .check(check);
+  return table;
+}
+
 Subject read_subject(const StudyTable& table) {
-  Subject s;
   // Rejected coefficients are "unknown" in such a file, and whoever needs their numbers refuses that.
   table.accept("grades");
   static_cast<void>(table.flag_or("accept_rejected", false));
-  if (table.has("builtin")) s = builtin_subject(table.text("builtin"), table.place("builtin"));
-  s.name = table.text_or("name", s.name.empty() ? "aircraft" : s.name);
-  s.description = table.text_or("description", s.description);
-  s.sign_convention = table.text_or("sign_convention", s.sign_convention);
-  s.mass = positive(table, "mass", "kg", s.mass);
-  s.wing_area = positive(table, "wing_area", "m^2", s.wing_area);
-  s.span = positive(table, "span", "m", s.span);
-  s.chord = positive(table, "chord", "m", s.chord);
-  if (table.has("reference_lengths")) s.lengths = read_reference_lengths(table.table("reference_lengths"));
-  s.force_point = vector3(table, "force_point", s.force_point);
-  s.imu_position = vector3(table, "imu_position", s.imu_position);
-  if (table.has("inertia")) {
-    s.warnings.clear();
-    s.inertia = read_inertia(table, s.warnings);
-  }
-  if (table.has("sigma")) s.sigma = read_body_sigma(table.table("sigma"));
-  s.model = read_aero_model(table.table_or_empty("model"), s.model);
-  s.propulsion = read_propulsion(table.table_or_empty("propulsion"), s.propulsion);
-  const StudyTable actuators = table.table_or_empty("actuators");
-  s.elevator = read_actuator(actuators.table_or_empty("elevator"), s.elevator, false);
-  s.aileron = read_actuator(actuators.table_or_empty("aileron"), s.aileron, false);
-  s.rudder = read_actuator(actuators.table_or_empty("rudder"), s.rudder, false);
-  s.throttle = read_actuator(actuators.table_or_empty("throttle"), s.throttle, true);
-  return s;
+  return subject_keys().read(table);
 }
 
 std::string write_subject_toml(const Subject& s) {

@@ -93,33 +93,9 @@ struct Subject {
   friend bool operator==(const Subject& a, const Subject& b);
 };
 
-/// Reads `[subject]`.
-///
-///     builtin = "unatrap"       # start from a built-in subject (see builtin_subjects.hpp); every other key overrides
-///     name, description, sign_convention          # texts
-///     mass = 12.6               # [kg] > 0
-///     wing_area = 0.92          # [m^2] > 0
-///     span = 2.72               # [m] > 0
-///     chord = 0.34              # [m] > 0
-///     reference_lengths = { roll = 2.72, pitch = 0.34, yaw = 2.72 }    # [m], each optional: span, chord, span
-///     force_point = [0, 0, 0]   # [m] where the aerodynamic force acts, from the centre of gravity
-///     imu_position = [0, 0, 0]  # [m] from the centre of gravity, body axes
-///     inertia = { Jx = 1.1, Jy = 1.2, Jz = 2.0, Jxz = 0.1 }      # [kg m^2]; Jxz may be left out
-///     sigma = { mass = 0.02, wing_area = 0.01, span = 0.005, chord = 0.002, Jx = 0.01, Jy = 0.02, Jz = 0.02, Jxz =
-///     0.01 }
-///                               # standard deviations, each optional; they widen the intervals of the derivatives
-///     [subject.model]           # see read_aero_model
-///     [subject.propulsion]      # see read_propulsion
-///     [subject.actuators.elevator]                # likewise aileron, rudder, throttle
-///     lower = "-20 deg"         # stops; upper alone makes them symmetric (throttle: 0 .. 1)
-///     upper = "20 deg"
-///     rate_limit = "300 deg/s"
-///     time_constant = 0.05      # [s]
-///     delay = 0.02              # [s]
-///
-/// Without `builtin`, mass, wing_area, span and chord must be there. Inertia that is not positive definite is refused;
-/// one that breaks the triangle inequality is kept with a warning.
-/// @throws InputError with file, line and key.
+/// Study table `[subject]`: what it leaves out is as in the object, or as in the built-in subject that it names.
+/// Inertia that is not positive definite is refused; one that breaks the triangle inequality is kept with a warning.
+[[nodiscard]] const KeyTable<Subject>& subject_keys();
 [[nodiscard]] Subject read_subject(const StudyTable& table);
 
 /// The subject as TOML, `[subject]` and its tables, complete and without reference to a built-in one; reading it gives

@@ -1,90 +1,128 @@
 #include "veridyn/aircraft/reconstruction/reconstruct_options.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <algorithm>
-#include <array>
-
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::aircraft {
 namespace {
 
-/// The words of a list, each of which must be one of `choices`.
-std::vector<std::string> words_of(const StudyTable& table, const char* key, std::span<const std::string> choices) {
-  if (!table.has(key)) return {};
-  std::vector<std::string> words = table.texts(key);
-  for (const std::string& word : words) {
-    if (std::find(choices.begin(), choices.end(), word) == choices.end())
-      table.fail(key, fmt::format("does not know '{}'; choices: {}", word, fmt::join(choices, ", ")));
-  }
-  return words;
+using O = ReconstructOptions;
+
+void read_turbulence(const StudyTable& table, const std::string& key, O& o) {
+  o.turbulence.reset();
+  if (table.is_table(key))
+    o.turbulence = {"study", read_dryden(table, key)};
+  else if (const std::string setting = table.text(key); setting != "auto")
+    o.turbulence = {setting, dryden_settings(setting, table.place(key))};
 }
 
-double not_negative_or(const StudyTable& table, const char* key, const char* unit, double otherwise) {
-  const double value = table.number_or(key, unit, otherwise);
-  if (!(value >= 0.0)) table.fail(key, fmt::format("= {} must be >= 0", value));
-  return value;
+const KeyTable<O::Sigma>& sigma_keys() {
+  using S = O::Sigma;
+  static const auto table =
+      KeyTable<S>("sigma", "Standard deviations of white noise per sample, in place of what `sensors` says.")
+          .number("accelerometer", &S::accelerometer, "m/s^2", kPositive, "each axis")
+          .number("gyro", &S::gyro, "rad/s", kPositive, "each axis")
+          .number("attitude", &S::attitude, "rad", kPositive, "each angle")
+          .number("velocity", &S::velocity, "m/s", kPositive, "north and east")
+          .number("velocity_down", &S::velocity_down, "m/s", kPositive, "down")
+          .number("dynamic_pressure", &S::dynamic_pressure, "Pa", kPositive, "pitot tube")
+          .number("airspeed", &S::airspeed, "m/s", kPositive, "pitot tube that gives a speed")
+          .number("alpha", &S::alpha, "rad", kPositive, "vane")
+          .number("beta", &S::beta, "rad", kPositive, "vane");
+  return table;
 }
 
-/// One number for each of CL, CD and CY.
-std::array<double, 3> read_force_errors(const StudyTable& table, const char* key, std::array<double, 3> otherwise) {
-  if (!table.has(key)) return otherwise;
-  const std::vector<double> v = table.numbers(key, "1");
-  if (v.size() != 3) table.fail(key, fmt::format("has {} numbers, expected [CL, CD, CY]", v.size()));
-  for (const double value : v) {
-    if (!(value >= 0.0)) table.fail(key, fmt::format("holds {}; all must be >= 0", value));
-  }
-  return {v[0], v[1], v[2]};
+const KeyTable<O::Delay>& delay_keys() {
+  using D = O::Delay;
+  static const auto table = KeyTable<D>("delay", "How late stamps are, on top of `[delays]`.")
+                                .number("velocity", &D::velocity, "s", kAnyNumber, "of the ground velocity")
+                                .number("attitude", &D::attitude, "s", kAnyNumber, "of the angles")
+                                .number("pitot", &D::pitot, "s", kAnyNumber, "of dynamic pressure or airspeed")
+                                .number("alpha", &D::alpha, "s", kAnyNumber, "of the vane")
+                                .number("beta", &D::beta, "s", kAnyNumber, "of the vane");
+  return table;
 }
 
-FilterKind read_filter(const StudyTable& table) {
-  const std::array<std::string, 4> filters{"model-free", "model-based", "guarded", "none"};
-  const std::string filter = table.choice_or("filter", filters, "model-free");
-  return filter == "guarded"       ? FilterKind::kGuarded
-         : filter == "model-based" ? FilterKind::kModelBased
-         : filter == "none"        ? FilterKind::kNone
-                                   : FilterKind::kModelFree;
+/// What the filter is, and what its model is worth.
+KeyTable<O> filter_keys() {
+  return KeyTable<O>("reconstruct")
+      .choice(
+          "filter", &O::filter,
+          {{"model-free", FilterKind::kModelFree},
+           {"model-based", FilterKind::kModelBased},
+           {"guarded", FilterKind::kGuarded},
+           {"none", FilterKind::kNone}},
+          "`model-based`: the derivatives are known, and the accelerometer is a measurement; `guarded`: both side by "
+          "side, the model-based one as long as its innovations allow; `none`: airspeed and flow angles as recorded")
+      .file("estimate_file", &O::estimate_file,
+            "`estimate.json` whose derivatives of CL, CD and CY the model-based filter takes")
+      .otherwise("the subject's values")
+      .flag("compare", &O::compare, "simulated flights: both filters are run and compared with the truth")
+      .numbers("model_error", &O::model_error, "1", kNotNegative,
+               "of CL, CD, CY: 1 sigma of constants by which they may be off; 0: the model is exact")
+      .numbers("model_error_walk", &O::model_error_walk, "1", kNotNegative, "how these wander, in 1/sqrt(s)");
 }
 
-std::optional<AssumedTurbulence> read_turbulence(const StudyTable& table) {
-  if (table.is_table("turbulence")) return AssumedTurbulence{"study", read_dryden(table, "turbulence")};
-  const std::array<std::string, 6> settings{"auto",         "none",         "low_light",
-                                            "low_moderate", "medium_light", "medium_moderate"};
-  const std::string setting = table.choice_or("turbulence", settings, "auto");
-  return setting == "auto" ? std::nullopt : std::optional(named_turbulence(setting));
+/// What is assumed of sensors and of the air.
+KeyTable<O> assumption_keys() {
+  return KeyTable<O>("reconstruct")
+      .number("rate", &O::rate_Hz, "Hz", kPositive, "of the results")
+      .otherwise("the gyro's stamps")
+      .choice("sensors", &O::sensors, {{"auto", NoiseSource::kMeasured}, {"reference", NoiseSource::kReference}},
+              "`auto`: the noise floor measured in each channel, but not less than what an ordinary autopilot's errors "
+              "amount to (section 5); `reference`: the reference set, right for simulated recordings")
+      .other(
+          turbulence_key({"auto"},
+                         "`auto`: spectrum and intensity of the largest likelihood of the innovations; a table as of "
+                         "`[flight]`"),
+          read_turbulence)
+      .number("turbulence_scale", &O::turbulence_scale, "1", kPositive, "on the intensities, where they are given")
+      .flags("estimate",
+             {{"gyro_bias", &O::gyro_bias},
+              {"accel_bias", &O::accel_bias},
+              {"gyro_scale", &O::gyro_scale},
+              {"accel_scale", &O::accel_scale},
+              {"alpha_bias", &O::alpha_bias},
+              {"beta_bias", &O::beta_bias},
+              {"alpha_scale", &O::alpha_scale},
+              {"pitot_scale", &O::pitot_scale},
+              {"pitot_bias", &O::pitot_bias}},
+             true, "errors of sensors to estimate; `alpha_scale` is the upwash")
+      .flags("without", {{"alpha", &O::use_alpha}, {"beta", &O::use_beta}, {"pitot", &O::use_pitot}}, false,
+             "sensors that the filter does not use")
+      .choice("airspeed_is", &O::airspeed_is_true, {{"true", true}, {"equivalent", false}},
+              "what a channel `airspeed` is; `equivalent`: indicated by a calibrated tube. `dynamic_pressure` is "
+              "preferred where there is one")
+      .choice("beta_vane", &O::beta_is_flank, {{"sideslip", false}, {"flank", true}},
+              "what the channel `beta` is: asin(v/Va), or `flank` atan2(v, u)")
+      .numbers("vane_position", &O::vane_position, "m", kAnyNumber,
+               "of the vanes from the centre of gravity: forward, right, down");
 }
 
-Eigen::Vector3d read_vane_position(const StudyTable& table) {
-  if (!table.has("vane_position")) return Eigen::Vector3d::Zero();
-  const std::vector<double> p = table.numbers("vane_position", "m");
-  if (p.size() != 3) table.fail("vane_position", fmt::format("has {} numbers, expected [x, y, z]", p.size()));
-  return {p[0], p[1], p[2]};
-}
-
-ReconstructOptions::Sigma read_sigma(const StudyTable& table) {
-  const auto read = [&](const char* key, const char* unit) {
-    return table.has(key) ? std::optional(table.positive(key, unit)) : std::nullopt;
-  };
-  return {.accelerometer = read("accelerometer", "m/s^2"),
-          .gyro = read("gyro", "rad/s"),
-          .attitude = read("attitude", "rad"),
-          .velocity = read("velocity", "m/s"),
-          .velocity_down = read("velocity_down", "m/s"),
-          .dynamic_pressure = read("dynamic_pressure", "Pa"),
-          .airspeed = read("airspeed", "m/s"),
-          .alpha = read("alpha", "rad"),
-          .beta = read("beta", "rad")};
-}
-
-ReconstructOptions::Delay read_delay(const StudyTable& table) {
-  const auto read = [&](const char* key) { return table.number_or(key, "s", 0.0); };
-  return {.velocity = read("velocity"),
-          .attitude = read("attitude"),
-          .pitot = read("pitot"),
-          .alpha = read("alpha"),
-          .beta = read("beta")};
+/// What the filter goes by.
+KeyTable<O> tuning_keys() {
+  return KeyTable<O>("reconstruct")
+      .number("wind_walk", &O::wind_walk, "1", kNotNegative,
+              "random walk of the slow wind, horizontal, in m/s/sqrt(s): 0.02 is 1.2 m/s in an hour")
+      .number("wind_down_walk", &O::wind_down_walk, "1", kNotNegative, "and vertical")
+      .number("initial_wind", &O::initial_wind, "m/s", kPositive,
+              "1 sigma of the slow wind before anything is known, north and east")
+      .number("initial_wind_down", &O::initial_wind_down, "m/s", kPositive, "and vertical")
+      .number("min_airspeed", &O::min_airspeed, "m/s", kNotNegative, "below it the vanes are not used")
+      .number("max_gap", &O::max_gap, "s", kPositive,
+              "without gyro or accelerometer for longer the estimate ends and starts again")
+      .number(
+          "gate", [](O & o) -> auto& { return o.gate.threshold; }, "1", kPositive,
+          "innovations beyond this many sigma are dropped")
+      .number(
+          "gate_recovery", [](O & o) -> auto& { return o.gate.recovery_s; }, "s", kPositive,
+          "a sensor dropped for this long is taken back with inflated variance")
+      .number(
+          "dead_reckoning", [](O & o) -> auto& { return o.gate.dead_reckoning_s; }, "s", kPositive,
+          "a sensor refused for this much longer than accepted, and a twentieth of the recording, ends the "
+          "reconstruction")
+      .flag("innovations", &O::keep_innovations,
+            "keeps those of every sensor: `innovations.csv`, and a figure in the report");
 }
 
 }  // namespace
@@ -103,60 +141,15 @@ const char* to_string(FilterKind kind) {
   return "";
 }
 
-ReconstructOptions ReconstructOptions::read(const StudyTable& table) {
-  ReconstructOptions o;
-  o.filter = read_filter(table);
-  if (table.has("estimate_file")) o.estimate_file = table.files("estimate_file").at(0);
-  o.compare = table.flag_or("compare", o.compare);
-  o.model_error = read_force_errors(table, "model_error", o.model_error);
-  o.model_error_walk = read_force_errors(table, "model_error_walk", o.model_error_walk);
-  o.guard = estimation::GuardOptions::read(table.table_or_empty("guard"));
-  if (table.has("rate")) o.rate_Hz = table.positive("rate", "1/s");
-  const std::array<std::string, 2> sensors{"auto", "reference"};
-  const bool reference = table.choice_or("sensors", sensors, "auto") == "reference";
-  o.sensors = reference ? NoiseSource::kReference : NoiseSource::kMeasured;
-  o.turbulence = read_turbulence(table);
-  o.turbulence_scale = table.positive_or("turbulence_scale", "1", o.turbulence_scale);
-
-  const std::array<std::string, 9> errors{"gyro_bias", "accel_bias",  "gyro_scale",  "accel_scale", "alpha_bias",
-                                          "beta_bias", "alpha_scale", "pitot_scale", "pitot_bias"};
-  const std::vector<std::string> estimated = words_of(table, "estimate", errors);
-  const auto listed = [](const std::vector<std::string>& words, const char* word) {
-    return std::find(words.begin(), words.end(), word) != words.end();
-  };
-  o.gyro_bias = listed(estimated, "gyro_bias");
-  o.accel_bias = listed(estimated, "accel_bias");
-  o.gyro_scale = listed(estimated, "gyro_scale");
-  o.accel_scale = listed(estimated, "accel_scale");
-  o.alpha_bias = listed(estimated, "alpha_bias");
-  o.beta_bias = listed(estimated, "beta_bias");
-  o.alpha_scale = listed(estimated, "alpha_scale");
-  o.pitot_scale = listed(estimated, "pitot_scale");
-  o.pitot_bias = listed(estimated, "pitot_bias");
-  const std::array<std::string, 3> air_sensors{"alpha", "beta", "pitot"};
-  const std::vector<std::string> without = words_of(table, "without", air_sensors);
-  o.use_alpha = !listed(without, "alpha");
-  o.use_beta = !listed(without, "beta");
-  o.use_pitot = !listed(without, "pitot");
-  const std::array<std::string, 2> speeds{"true", "equivalent"};
-  o.airspeed_is_true = table.choice_or("airspeed_is", speeds, "true") == "true";
-  const std::array<std::string, 2> vanes{"sideslip", "flank"};
-  o.beta_is_flank = table.choice_or("beta_vane", vanes, "sideslip") == "flank";
-  o.vane_position = read_vane_position(table);
-
-  o.wind_walk = not_negative_or(table, "wind_walk", "1", o.wind_walk);
-  o.wind_down_walk = not_negative_or(table, "wind_down_walk", "1", o.wind_down_walk);
-  o.initial_wind = table.positive_or("initial_wind", "m/s", o.initial_wind);
-  o.initial_wind_down = table.positive_or("initial_wind_down", "m/s", o.initial_wind_down);
-  o.min_airspeed = not_negative_or(table, "min_airspeed", "m/s", o.min_airspeed);
-  o.max_gap = table.positive_or("max_gap", "s", o.max_gap);
-  o.gate.threshold = table.positive_or("gate", "1", o.gate.threshold);
-  o.gate.recovery_s = table.positive_or("gate_recovery", "s", o.gate.recovery_s);
-  o.gate.dead_reckoning_s = table.positive_or("dead_reckoning", "s", o.gate.dead_reckoning_s);
-  o.keep_innovations = table.flag_or("innovations", o.keep_innovations);
-  o.sigma = read_sigma(table.table_or_empty("sigma"));
-  o.delay = read_delay(table.table_or_empty("delay"));
-  return o;
+const KeyTable<ReconstructOptions>& ReconstructOptions::keys() {
+  static const auto table = KeyTable<O>("reconstruct", "How the motion through the air is reconstructed (section 5).")
+                                .with(filter_keys())
+                                .with(assumption_keys())
+                                .with(tuning_keys())
+                                .table("guard", &O::guard, estimation::GuardOptions::keys())
+                                .table("sigma", &O::sigma, sigma_keys())
+                                .table("delay", &O::delay, delay_keys());
+  return table;
 }
 
 SensorSigma autopilot_floor() {

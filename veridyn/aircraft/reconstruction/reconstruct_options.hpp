@@ -54,46 +54,7 @@ struct AssumedTurbulence {
 /// The spectrum of a named setting; see gust_spectrum.
 [[nodiscard]] AssumedTurbulence named_turbulence(const std::string& setting);
 
-/// How the motion through the air is reconstructed. Study table `[reconstruct]`; every key is optional.
-///
-///     [reconstruct]
-///     filter = "model-free"    # "model-based": the subject's derivatives are known, the accelerometer is a
-///     measurement;
-///                              # "guarded": both in parallel, the model-based one as long as its innovations allow;
-///                              # "none": regression on airspeed and flow angles as they were recorded
-///     estimate_file = "estimate.json"  # source of the derivatives of CL, CD, CY; without it the subject's values
-///     compare = true           # with "model-based" or "guarded" and a simulated flight: the other filters' errors too
-///     model_error = [0.02, 0.005, 0.01]  # 1 sigma of constants by which CL, CD, CY may be off; 0: the model is exact
-///     model_error_walk = [5e-4, 2e-4, 2e-4]  # how they wander [1/sqrt(s)]
-///     rate = "100 Hz"          # of the results; without it they come at the gyro's stamps
-///     sensors = "auto"         # "reference": the specification's reference set, right for simulated recordings;
-///                              # "auto": the noise floor measured in each channel, but not less than what an ordinary
-///                              # autopilot's errors that are not white amount to (values in `autopilot_floor()`)
-///     turbulence = "auto"      # "none" | "low_light" | "low_moderate" | "medium_light" | "medium_moderate" |
-///                              # "auto": spectrum and intensity of the largest innovation likelihood; or a table
-///                              # { Lu, Lv, Lw, sigma_u, sigma_v, sigma_w } as in a simulation
-///     turbulence_scale = 1.0   # on the intensities, where they are given
-///     estimate = []            # sensor errors to estimate: "gyro_bias", "accel_bias", "gyro_scale", "accel_scale",
-///                              # "alpha_bias", "beta_bias", "alpha_scale" (upwash), "pitot_scale", "pitot_bias"
-///     without = []             # sensors not to use: "alpha", "beta", "pitot"
-///     airspeed_is = "true"     # of a channel `airspeed`: "true" or "equivalent" (indicated by a calibrated tube)
-///     beta_vane = "sideslip"   # what the channel `beta` is: "sideslip" asin(v/Va) or "flank" atan2(v, u)
-///     vane_position = [0,0,0]  # of the vanes from the centre of gravity, body axes [m]
-///     wind_walk = 0.02         # slow wind's random walk, horizontal [m/s / sqrt(s)]: 1.2 m/s in an hour
-///     wind_down_walk = 0.01    # and vertical
-///     initial_wind = "5 m/s"   # 1 sigma of the slow wind before anything is known, north and east
-///     initial_wind_down = "0.5 m/s"
-///     min_airspeed = "3 m/s"   # below it the vanes are not used
-///     max_gap = "0.5 s"        # without gyro or accelerometer for longer: the estimate ends and starts again
-///     gate = 5.0               # innovations beyond this many sigma are dropped
-///     gate_recovery = "2 s"    # a sensor dropped for this long is taken back with inflated variance
-///     dead_reckoning = "10 s"  # a sensor dropped for this much longer than accepted ends the reconstruction
-///     innovations = false      # keep the innovations of every sensor, for a table and a figure
-///     [reconstruct.sigma]      # overrides `sensors`, 1 sigma per sample: accelerometer, gyro, attitude, velocity,
-///     alpha = "0.6 deg"        # velocity_down, dynamic_pressure, airspeed, alpha, beta
-///     [reconstruct.guard]      # see estimation::GuardOptions
-///     [reconstruct.delay]      # how late a sensor's stamps are: velocity, attitude, pitot, alpha, beta
-///     velocity = "0.1 s"
+/// How the motion through the air is reconstructed. Study table `[reconstruct]`.
 struct ReconstructOptions {
   FilterKind filter = FilterKind::kModelFree;
   std::filesystem::path estimate_file;  ///< empty: the subject's values
@@ -101,7 +62,7 @@ struct ReconstructOptions {
   std::array<double, 3> model_error{0.02, 0.005, 0.01};
   std::array<double, 3> model_error_walk{5e-4, 2e-4, 2e-4};
   estimation::GuardOptions guard;
-  double rate_Hz = 0.0;
+  double rate_Hz = 0.0;  ///< 0: at the gyro's stamps
   NoiseSource sensors = NoiseSource::kMeasured;
   std::optional<AssumedTurbulence> turbulence = {};  ///< nothing: the spectrum of the largest innovation likelihood
   double turbulence_scale = 1.0;
@@ -127,21 +88,19 @@ struct ReconstructOptions {
   double min_airspeed = 3.0;
   double max_gap = 0.5;
   estimation::InnovationGate gate;
-  /// `[reconstruct.sigma]`: overrides `sensors`, units of SensorSigma.
+  /// Overrides `sensors`, units of SensorSigma.
   struct Sigma {
     std::optional<double> accelerometer, gyro, attitude, velocity, velocity_down, dynamic_pressure, airspeed, alpha,
         beta;
   } sigma;
-  /// `[reconstruct.delay]` [s].
+  /// How late stamps are [s].
   struct Delay {
     double velocity = 0.0, attitude = 0.0, pitot = 0.0, alpha = 0.0, beta = 0.0;
   } delay;
   bool keep_innovations = false;
   bool keep_filter = true;  ///< whether the filter's estimate is kept in addition to the smoother's
 
-  /// Reads the table `[reconstruct]`.
-  /// @throws InputError naming file, line and key.
-  [[nodiscard]] static ReconstructOptions read(const StudyTable& table);
+  [[nodiscard]] static const KeyTable<ReconstructOptions>& keys();
 
   [[nodiscard]] bool estimates_imu_biases() const { return gyro_bias || accel_bias || estimates_imu_scales(); }
   [[nodiscard]] bool estimates_imu_scales() const { return gyro_scale || accel_scale; }

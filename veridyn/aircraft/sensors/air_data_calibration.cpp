@@ -9,6 +9,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/estimation/regression/regression.hpp"
 #include "veridyn/io/tables/table.hpp"
 
@@ -250,42 +251,77 @@ double SensorCalibration::sigma(double raw, bool with_residual) const {
   return std::sqrt(std::max(0.0, J.dot(covariance * J)) + (with_residual ? residual_rms * residual_rms : 0.0));
 }
 
-CalibrationStudy CalibrationStudy::read(const StudyTable& table) {
-  CalibrationStudy study;
-  study.name = table.text_or("name", study.name);
-  study.file = table.file("file");
+namespace {
+
+void check_input(const StudyTable& table, CalibrationInput& in) {
+  std::vector<std::string> missing;
+  const auto want = [&](const char* key) {
+    if (!table.has(key)) missing.emplace_back(key);
+  };
+  if (in.reference_speed.empty()) {
+    want("reference");
+    for (const char* key : {"air_density", "static_pressure", "air_temperature"})
+      if (table.has(key)) table.fail(key, "is of a reference_speed");
+  } else {
+    if (table.has("reference")) table.fail("reference", "is given together with reference_speed");
+    if (table.has("air_density")) {
+      for (const char* key : {"static_pressure", "air_temperature"})
+        if (table.has(key)) table.fail(key, "is given together with air_density");
+    } else {
+      want("static_pressure");
+      want("air_temperature");
+    }
+  }
+  refuse_missing(table, missing);
+  if (in.sigma_reference > 0.0 && !(in.sigma_raw > 0.0))
+    table.fail("sigma_reference", "needs sigma_raw alongside: total least squares goes by their ratio");
+}
+
+KeyTable<CalibrationInput> input_keys(const std::string& channel) {
+  using I = CalibrationInput;
+  KeyTable<I> table(channel, fmt::format("One sensor; likewise {}.", fmt::join(calibrated_channels(), ", ")));
+  table.text("raw", &I::raw, "column of its reading")
+      .required()
+      .text("reference", &I::reference, "column of the truth")
+      .otherwise("required without `reference_speed`");
+  if (channel == "dynamic_pressure")
+    table.text("reference_speed", &I::reference_speed, "dynamic pressure: column of a speed in place of `reference`")
+        .text("static_pressure", &I::static_pressure, "and of the pressure that gives the density")
+        .text("air_temperature", &I::air_temperature, "and of the temperature")
+        .number("air_density", &I::air_density, "kg/m^3", kPositive, "or that density")
+        .otherwise("by pressure and temperature");
+  return table
+      .number("sigma_reference", &I::sigma_reference, unit_of(channel), kNotNegative,
+              "standard error of the reference per point; with it total least squares takes the place of least squares")
+      .number("sigma_raw", &I::sigma_raw, unit_of(channel), kNotNegative, "standard error of the reading per point")
+      .check(check_input);
+}
+
+void read_sensors(const StudyTable& table, CalibrationStudy& study) {
   for (const std::string& channel : calibrated_channels()) {
     if (!table.has(channel)) continue;
-    const StudyTable t = table.table(channel);
-    CalibrationInput in;
-    in.channel = channel;
-    in.raw = t.text("raw");
-    if (channel == "dynamic_pressure" && t.has("reference_speed")) {
-      if (t.has("reference")) t.fail("reference", "is given together with reference_speed");
-      in.reference_speed = t.text("reference_speed");
-      if (t.has("air_density")) {
-        in.air_density = t.positive("air_density", "kg/m^3");
-      } else {
-        in.static_pressure = t.text("static_pressure");
-        in.air_temperature = t.text("air_temperature");
-      }
-    } else {
-      in.reference = t.text("reference");
-    }
-    const std::string unit = unit_of(channel);
-    in.sigma_reference = t.number_or("sigma_reference", unit, 0.0);
-    in.sigma_raw = t.number_or("sigma_raw", unit, 0.0);
-    if (!(in.sigma_reference >= 0.0)) t.fail("sigma_reference", fmt::format("= {:g} must be >= 0", in.sigma_reference));
-    if (!(in.sigma_raw >= 0.0)) t.fail("sigma_raw", fmt::format("= {:g} must be >= 0", in.sigma_raw));
-    if (in.sigma_reference > 0.0 && !(in.sigma_raw > 0.0))
-      t.fail("sigma_reference", "needs sigma_raw alongside: total least squares goes by their ratio");
-    study.sensors.push_back(std::move(in));
+    study.sensors.push_back(input_keys(channel).read(table.table(channel)));
+    study.sensors.back().channel = channel;
   }
-  if (study.sensors.empty()) {
-    table.fail("file",
-               fmt::format("the calibration names no sensor; known are {}", fmt::join(calibrated_channels(), ", ")));
-  }
-  return study;
+}
+
+}  // namespace
+
+const KeyTable<CalibrationStudy>& CalibrationStudy::keys() {
+  using S = CalibrationStudy;
+  static const auto table =
+      KeyTable<S>("calibration", "Points of a wind tunnel, from which sensors are calibrated.")
+          .text("name", &S::name, "of what is calibrated")
+          .file("file", &S::file,
+                "table of the points, columns `name[unit]`, rows in the order in which they were taken")
+          .required()
+          .within("dynamic_pressure", input_keys("dynamic_pressure"), read_sensors)
+          .check([](const StudyTable& t, S& study) {
+            if (study.sensors.empty())
+              t.fail("file", fmt::format("the calibration names no sensor; known are {}",
+                                         fmt::join(calibrated_channels(), ", ")));
+          });
+  return table;
 }
 
 std::string method_text(const SensorFit& fit) {

@@ -48,26 +48,12 @@ struct CalibrationInput {
   double sigma_raw = 0.0, sigma_reference = 0.0;
 };
 
-/// From wind-tunnel points to calibrations. Study table `[calibration]`:
-///
-///     [calibration]
-///     file = "tunnel.csv"                # columns name[unit]; rows in the order in which they were taken
-///     name = "my air-data boom"
-///     [calibration.dynamic_pressure]     # likewise static_pressure, air_temperature, airspeed, alpha, beta
-///     raw = "dp_raw"                     # column of the sensor's reading
-///     reference = "q_ref"                # column of the truth; for dynamic pressure also
-///     reference_speed = "V_ref"          #   a speed, with the density from
-///     static_pressure = "p"              #   columns of pressure and temperature, or
-///     air_temperature = "T"
-///     air_density = 1.2                  #   a number
-///     sigma_reference = "0.5 Pa"         # standard errors per point; with errors in the reference total least squares
-///     sigma_raw = "2 Pa"                 # takes the place of least squares, and needs both
+/// From wind-tunnel points to calibrations. Study table `[calibration]`.
 struct CalibrationStudy {
   std::string name = "air data";
   std::filesystem::path file;
   std::vector<CalibrationInput> sensors;
-  /// @throws InputError for values that make no sense.
-  [[nodiscard]] static CalibrationStudy read(const StudyTable& table);
+  [[nodiscard]] static const KeyTable<CalibrationStudy>& keys();
 };
 
 /// Fit of one sensor and what the residual says about it.

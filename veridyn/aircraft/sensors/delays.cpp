@@ -14,6 +14,7 @@
 #include "veridyn/aircraft/model/still_air_rate.hpp"
 #include "veridyn/aircraft/sensors/vane_kinematics.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/estimation/judgement/evidence.hpp"
 #include "veridyn/numerics/rotation.hpp"
 #include "veridyn/numerics/threads/parallel.hpp"
@@ -423,10 +424,10 @@ class Alignment {
 
 }  // namespace
 
-DelayAlignment DelayAlignment::read(const StudyTable& table) {
-  DelayAlignment options;
-  options.read_keys(table, groups());
-  return options;
+const KeyTable<DelayAlignment>& DelayAlignment::keys() {
+  static const auto table = KeyTable<DelayAlignment>("delays", "How sensors are brought onto one clock (section 4).")
+                                .with(recording::DelayOptions::keys(groups()));
+  return table;
 }
 
 AlignedRecording align_delays(MappedRecording mapped, const DelayAlignment& options, Progress& progress) {

@@ -13,16 +13,15 @@ namespace veridyn::aircraft {
 
 using recording::DelayReport;
 
-/// How sensors are brought onto one clock: the keys of recording::DelayOptions, with the groups `attitude`, `gps`,
-/// `airspeed`, `alpha`, `beta`, `elevator`, `aileron`, `rudder`. Study table `[delays]`.
+/// How sensors are brought onto one clock, in groups: attitude, GPS, airspeed, each vane, each surface. Study table
+/// `[delays]`.
 struct DelayAlignment : recording::DelayOptions {
   // What the motion past the vanes is computed with; no keys of this table.
   double air_density = kSeaLevelDensity;                   ///< median of the flight [kg/m^3]
   bool airspeed_is_true = true;                            ///< a channel `airspeed`; false: equivalent
   numerics::Vector3<double> vane_position{0.0, 0.0, 0.0};  ///< from the centre of gravity, body axes [m]
 
-  /// @throws InputError for values that make no sense.
-  [[nodiscard]] static DelayAlignment read(const StudyTable& table);
+  [[nodiscard]] static const KeyTable<DelayAlignment>& keys();
 };
 
 /// A recording whose sensors are on one clock, and how late each was.

@@ -1,20 +1,18 @@
 #include "veridyn/aircraft/sensors/sensors.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::aircraft {
 
 namespace {
-
-void require_not_negative(const StudyTable& t, std::string_view key, double v) {
-  if (!(v >= 0.0)) t.fail(key, fmt::format("= {:g} must be >= 0", v));
-}
 
 /// One number for all channels or one for each.
 void read_each(const StudyTable& t, std::string_view key, const SensorKind& kind, std::array<double, 4>& out,
@@ -27,30 +25,36 @@ void read_each(const StudyTable& t, std::string_view key, const SensorKind& kind
   for (std::size_t i = 0; i < kind.channels; ++i) out[i] = factor * v[v.size() == 1 ? 0 : i];
 }
 
-SensorSettings read_sensor(const StudyTable& t, const SensorKind& kind, SensorSettings s) {
-  // Naming a sensor switches it on.
-  s.enabled = t.flag_or("enabled", s.enabled || !t.keys().empty());
-  s.rate = t.positive_or("rate", "1/s", s.rate);
-  if (s.rate > 1e5) t.fail("rate", fmt::format("= {:g} Hz is above 100 kHz", s.rate));
-  if (t.has("sigma") && t.has("two_sigma")) t.fail("sigma", "is given together with two_sigma");
-  read_each(t, "sigma", kind, s.sigma, 1.0);
-  read_each(t, "two_sigma", kind, s.sigma, 0.5);
-  for (const double v : s.sigma) require_not_negative(t, t.has("sigma") ? "sigma" : "two_sigma", v);
-  read_each(t, "bias", kind, s.bias, 1.0);
-  s.bias_sigma = t.number_or("bias_sigma", kind.unit, s.bias_sigma);
-  require_not_negative(t, "bias_sigma", s.bias_sigma);
-  s.walk = t.number_or("walk", kind.unit, s.walk);
-  require_not_negative(t, "walk", s.walk);
-  s.scale = t.number_or("scale", "1", s.scale);
-  s.delay = t.number_or("delay", "s", s.delay);
-  require_not_negative(t, "delay", s.delay);
-  s.resolution = t.number_or("resolution", kind.unit, s.resolution);
-  require_not_negative(t, "resolution", s.resolution);
-  s.dropout = t.number_or("dropout", "1", s.dropout);
-  if (!(s.dropout >= 0.0 && s.dropout < 1.0)) t.fail("dropout", fmt::format("= {:g} must be >= 0 and < 1", s.dropout));
-  s.dropout_duration = t.number_or("dropout_duration", "s", s.dropout_duration);
-  require_not_negative(t, "dropout_duration", s.dropout_duration);
-  return s;
+KeyTable<SensorSettings> keys_of(const SensorKind& kind) {
+  using S = SensorSettings;
+  const std::string unit(kind.unit);
+  const auto each = [&kind](auto member, double factor) {
+    return [kind, member, factor](const StudyTable& t, const std::string& key, S& s) {
+      read_each(t, key, kind, s.*member, factor);
+    };
+  };
+  const std::string one_or_each = "one value, or one for each channel";
+  return KeyTable<S>(std::string(kind.name))
+      .flag("enabled", &S::enabled, "whether it is there; naming a sensor switches it on")
+      .number("rate", &S::rate, "Hz", share_up_to(1e5), "of its samples")
+      .other({"two_sigma", unit, one_or_each, "as of the set", "twice the standard deviation of its white noise", true},
+             each(&S::sigma, 0.5))
+      .other({"sigma", unit, one_or_each, "as of the set", "or the standard deviation itself", true},
+             each(&S::sigma, 1.0))
+      .other({"bias", unit, one_or_each, "0", "fixed", true}, each(&S::bias, 1.0))
+      .number("bias_sigma", &S::bias_sigma, unit, kNotNegative,
+              "standard deviation of a further fixed bias, drawn once a flight")
+      .number("walk", &S::walk, unit, kNotNegative, "standard deviation of the wandering bias after one second")
+      .number("scale", &S::scale, "1", kAnyNumber, "error of scale")
+      .number("delay", &S::delay, "s", kNotNegative, "from event to time stamp")
+      .number("resolution", &S::resolution, unit, kNotNegative, "step of the last digit; 0: none")
+      .number("dropout", &S::dropout, "1", {.low = 0.0, .high = 1.0, .with_high = false}, "share of lost samples")
+      .number("dropout_duration", &S::dropout_duration, "s", kNotNegative, "mean length of a loss; 0: single samples")
+      .check([](const StudyTable& t, S& s) {
+        if (t.has("sigma") && t.has("two_sigma")) t.fail("sigma", "is given together with two_sigma");
+        for (const double v : s.sigma)
+          if (!(v >= 0.0)) t.fail(t.has("sigma") ? "sigma" : "two_sigma", fmt::format("= {:g} must be >= 0", v));
+      });
 }
 
 /// The same noise on all channels.
@@ -94,23 +98,48 @@ SensorSet reference_sensors() {
   return set;
 }
 
-SensorSet read_sensors(const StudyTable& table) {
-  SensorSet set = reference_sensors();
-  const std::vector<std::string> sets = {"reference", "perfect"};
-  if (table.choice_or("set", sets, "reference") == "perfect") {
-    for (SensorSettings& s : set) s.sigma = {};
-  }
+namespace {
+
+void read_each_sensor(const StudyTable& table, SensorSet& set) {
   std::vector<std::string> names = {"set"};
   for (const SensorKind& kind : sensor_kinds()) names.emplace_back(kind.name);
-  for (const std::string& key : table.keys()) {
-    if (std::find(names.begin(), names.end(), key) == names.end()) {
+  for (const std::string& key : table.keys())
+    if (std::find(names.begin(), names.end(), key) == names.end())
       table.fail(key, fmt::format("unknown sensor{}", suggestion(key, names)));
-    }
-  }
   for (std::size_t i = 0; i < set.size(); ++i) {
     const SensorKind& kind = sensor_kinds()[i];
-    set[i] = read_sensor(table.table_or_empty(kind.name), kind, set[i]);
+    const StudyTable own = table.table_or_empty(kind.name);
+    set[i].enabled = set[i].enabled || !own.keys().empty();
+    keys_of(kind).read(own, set[i]);
   }
+}
+
+}  // namespace
+
+const KeyTable<SensorSet>& sensor_keys() {
+  static const auto table = [] {
+    std::vector<std::string_view> names;
+    for (const SensorKind& kind : sensor_kinds()) names.push_back(kind.name);
+    // All have the keys of the gyro, which stands for them.
+    return KeyTable<SensorSet>("sensors",
+                               fmt::format("What the simulated sensors are, and a table for each that differs from its "
+                                           "set: {}.",
+                                           fmt::join(names, ", ")))
+        .other(
+            {"set", "", "`\"reference\"`, `\"perfect\"`", "\"reference\"", "`perfect`: the same sensors without noise"},
+            [](const StudyTable& t, const std::string& key, SensorSet& set) {
+              const std::vector<std::string> sets{"reference", "perfect"};
+              if (t.choice_or(key, sets, "") != "perfect") return;
+              for (SensorSettings& s : set) s.sigma = {};
+            })
+        .within("gyro", keys_of(sensor_kinds()[1]), read_each_sensor);
+  }();
+  return table;
+}
+
+SensorSet read_sensors(const StudyTable& table) {
+  SensorSet set = reference_sensors();
+  sensor_keys().read(table, set);
   return set;
 }
 

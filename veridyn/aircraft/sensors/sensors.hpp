@@ -53,21 +53,9 @@ using SensorSet = std::vector<SensorSettings>;
 /// tachometer without error at 100 Hz; the thrust sensor is off.
 [[nodiscard]] SensorSet reference_sensors();
 
-/// Reads `[sensors]`: `set = "reference"` (or "perfect": the same sensors without error), then a table for each sensor
-/// that differs, `[sensors.gyro]`:
-///
-///     enabled = true
-///     rate = 100                  # [Hz]
-///     two_sigma = "0.7 deg/s"     # twice the standard deviation; one value, or one for each channel
-///     sigma = "0.35 deg/s"        # or the standard deviation itself
-///     bias = [0.01, 0, 0]         # one value, or one for each channel
-///     bias_sigma = "0.1 deg/s"    # a fixed bias drawn for each flight
-///     walk = 1e-4                 # standard deviation of the wandering bias after 1 s
-///     scale = 0.01                # error of scale
-///     delay = 0.02                # [s]
-///     resolution = 0.001          # quantisation
-///     dropout = 0.01              # share of lost samples
-///     dropout_duration = 0.5      # mean length of a loss [s]
+/// Study table `[sensors]`, over the reference set, with a table for each sensor that differs.
+[[nodiscard]] const KeyTable<SensorSet>& sensor_keys();
+/// The reference set with what the table changes. @throws InputError with file, line and key
 [[nodiscard]] SensorSet read_sensors(const StudyTable& table);
 
 /// One sensor at work. Draws from a separate random stream, so that switching one off leaves the others unchanged.

@@ -7,12 +7,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <tuple>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/io/read.hpp"
 #include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
 #include "veridyn/numerics/resample.hpp"
@@ -43,31 +45,54 @@ Eigen::VectorXd values_of(const SwingTest& test, const SwingAxis& axis, double w
   return v;
 }
 
-double not_negative(const StudyTable& t, std::string_view key, std::string_view unit, double otherwise) {
-  const double value = t.number_or(key, unit, otherwise);
-  if (!(value >= 0.0)) t.fail(key, fmt::format("= {:g} must be >= 0", value));
-  return value;
+const KeyTable<SwingAxis>& axis_keys() {
+  using A = SwingAxis;
+  static const auto table =
+      KeyTable<A>("x", "Swings about one body axis; `y` and `z` likewise, each optional.")
+          .choice("suspension", &A::suspension,
+                  {{"bifilar", Suspension::kBifilar}, {"pendulum", Suspension::kPendulum}},
+                  "`bifilar`: from two parallel lines, turning about the vertical; `pendulum`: about a pivot")
+          .number("filar_distance", &A::filar_distance, "m", kPositive, "between the lines")
+          .otherwise("required where bifilar")
+          .number("length", &A::length, "m", kPositive,
+                  "of the lines, or from pivot to centre of gravity, aircraft in its cradle")
+          .required()
+          .number("cradle_length", &A::cradle_length, "m", kPositive, "the same with the cradle alone")
+          .otherwise("required with a cradle")
+          .number("offset", &A::offset, "m", kAnyNumber,
+                  "pendulum: how much further from the pivot the aircraft's centre of gravity is")
+          .files("files", &A::files, "runs with the aircraft")
+          .required()
+          .files("cradle_files", &A::cradle_files, "runs of the cradle alone")
+          .otherwise("required with a cradle")
+          .check([](const StudyTable& t, A& axis) {
+            const bool bifilar = axis.suspension == Suspension::kBifilar;
+            if (bifilar && t.has("offset")) t.fail("offset", "is of a pendulum");
+            if (!bifilar && t.has("filar_distance")) t.fail("filar_distance", "is of a bifilar suspension");
+            if (bifilar && !t.has("filar_distance")) refuse_missing(t, {"filar_distance"});
+            if (axis.files.empty()) t.fail("files", "is empty");
+          });
+  return table;
 }
 
-SwingAxis read_axis(const StudyTable& t, char name, bool cradle) {
-  SwingAxis axis;
-  axis.axis = name;
-  const std::vector<std::string> choices{"bifilar", "pendulum"};
-  const bool bifilar = t.choice_or("suspension", choices, "bifilar") == "bifilar";
-  axis.suspension = bifilar ? Suspension::kBifilar : Suspension::kPendulum;
-  if (bifilar) axis.filar_distance = t.positive("filar_distance", "m");
-  axis.length = t.positive("length", "m");
-  if (!bifilar) axis.offset = t.number_or("offset", "m", 0.0);
-  axis.files = t.files("files");
-  if (axis.files.empty()) t.fail("files", "is empty");
-  if (cradle) {
-    axis.cradle_length = t.positive("cradle_length", "m");
-    axis.cradle_files = t.files("cradle_files");
-    if (axis.cradle_files.empty()) t.fail("cradle_files", "is empty, but there is a cradle_mass");
-  } else if (t.has("cradle_files")) {
-    t.fail("cradle_files", "is given, but cradle_mass is 0");
+void read_axes(const StudyTable& table, SwingTest& test) {
+  for (const char name : {'x', 'y', 'z'}) {
+    const std::string key(1, name);
+    if (!table.has(key)) continue;
+    const StudyTable own = table.table(key);
+    SwingAxis axis = axis_keys().read(own);
+    axis.axis = name;
+    if (test.cradle_mass > 0.0) {
+      std::vector<std::string> missing;
+      for (const char* of_cradle : {"cradle_length", "cradle_files"})
+        if (!own.has(of_cradle)) missing.emplace_back(of_cradle);
+      refuse_missing(own, missing);
+      if (axis.cradle_files.empty()) own.fail("cradle_files", "is empty, but there is a cradle_mass");
+    } else if (own.has("cradle_files")) {
+      own.fail("cradle_files", "is given, but cradle_mass is 0");
+    }
+    test.axes.push_back(std::move(axis));
   }
-  return axis;
 }
 
 /// Mean of the runs' frequencies and its standard deviation.
@@ -293,31 +318,33 @@ estimation::Estimate estimate_of(const SwingTest& test, const std::vector<AxisIn
 
 }  // namespace
 
-SwingTest SwingTest::read(const StudyTable& table) {
-  SwingTest test;
-  test.name = table.text_or("name", test.name);
-  test.mass = table.positive("mass", "kg");
-  test.cradle_mass = not_negative(table, "cradle_mass", "kg", 0.0);
-  test.gravity = table.positive_or("gravity", "m/s^2", test.gravity);
-  test.channel = table.text_or("channel", "");
-  test.max_relative_sigma = table.positive_or("max_relative_sigma", "1", test.max_relative_sigma);
-  test.settle_s = not_negative(table, "settle", "s", test.settle_s);
-  test.fade = not_negative(table, "fade", "1", test.fade);
-  if (!(test.fade < 1.0)) table.fail("fade", fmt::format("= {:g} must be below 1", test.fade));
-  const long long draws = table.integer_or("draws", static_cast<long long>(test.draws));
-  if (!(draws >= 100 && draws <= 100'000'000))
-    table.fail("draws", fmt::format("= {} must be from 100 to 100000000", draws));
-  test.draws = static_cast<std::size_t>(draws);
-  const StudyTable sigma = table.table_or_empty("sigma");
-  test.sigma_mass = not_negative(sigma, "mass", "kg", test.sigma_mass);
-  test.sigma_filar_distance = not_negative(sigma, "filar_distance", "m", test.sigma_filar_distance);
-  test.sigma_length = not_negative(sigma, "length", "m", test.sigma_length);
-  for (const char axis : {'x', 'y', 'z'}) {
-    const std::string key(1, axis);
-    if (table.has(key)) test.axes.push_back(read_axis(table.table(key), axis, test.cradle_mass > 0.0));
-  }
-  if (test.axes.empty()) table.fail("x", "is missing: the swing test has none of the tables x, y, z");
-  return test;
+const KeyTable<SwingTest>& SwingTest::keys() {
+  using T = SwingTest;
+  static const auto table =
+      KeyTable<T>("swing_test", "The aircraft hangs, usually in a cradle, and swings about a body axis.")
+          .text("name", &T::name, "of the aircraft")
+          .number("mass", &T::mass, "kg", kPositive, "of the aircraft alone")
+          .required()
+          .number("cradle_mass", &T::cradle_mass, "kg", kNotNegative, "of the cradle; 0: it hung without one")
+          .number("gravity", &T::gravity, "m/s^2", kPositive, "acceleration of free fall")
+          .text("channel", &T::channel, "the recorded angle")
+          .otherwise("quaternion `qx, qy, qz, qw`, or `angle`")
+          .number("max_relative_sigma", &T::max_relative_sigma, "1", kPositive,
+                  "an inertia that is known worse than this is not determined")
+          .number("settle", &T::settle_s, "s", kNotNegative, "left out after the largest excursion")
+          .number("fade", &T::fade, "1", {.low = 0.0, .high = 1.0, .with_high = false},
+                  "what comes after the last swing of this share of the largest is left out")
+          .count("draws", &T::draws, 100, 100'000'000, "of the Monte Carlo")
+          .table("sigma", std::identity(),
+                 KeyTable<T>("sigma", "Standard errors of what was measured by hand.")
+                     .number("mass", &T::sigma_mass, "kg", kNotNegative, "of each of both")
+                     .number("filar_distance", &T::sigma_filar_distance, "m", kNotNegative, "of that")
+                     .number("length", &T::sigma_length, "m", kNotNegative, "of each of lengths and offset"))
+          .within("x", axis_keys(), read_axes)
+          .check([](const StudyTable& t, T& test) {
+            if (test.axes.empty()) t.fail("x", "is missing: the swing test has none of the tables x, y, z");
+          });
+  return table;
 }
 
 SwingAngle swing_angle(const Recording& recording, const std::string& channel) {

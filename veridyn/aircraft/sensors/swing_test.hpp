@@ -36,33 +36,10 @@ struct SwingAxis {
                                      cradle_files = {};  ///< runs with the aircraft, and of the cradle alone
 };
 
-/// A swing test. Study table `[swing_test]`:
-///
-///     [swing_test]
-///     name = "my aircraft"
-///     mass = 2.470                 # of the aircraft alone [kg]
-///     cradle_mass = 1.042          # [kg]; 0 when it hung without one (then no cradle files)
-///     gravity = 9.80665
-///     draws = 100000               # of the Monte Carlo
-///     channel = ""                 # an angle, or empty: the quaternion qx, qy, qz, qw, or a channel `angle`
-///     settle = 0                   # leave out this long after the largest excursion [s]
-///     fade = 0.1                   # and what comes after the last swing of this share of the largest
-///     max_relative_sigma = 0.1     # an inertia that is known worse than this is not determined
-///     [swing_test.sigma]           # standard errors of what was measured by hand
-///     mass = 0.002                 # each of both [kg]
-///     filar_distance = 0.002       # [m]
-///     length = 0.005               # each of lengths and offset [m]
-///     [swing_test.x]               # and y, z; each optional
-///     suspension = "bifilar"       # or "pendulum"
-///     filar_distance = 0.49
-///     length = 1.145
-///     cradle_length = 1.44
-///     offset = 0.0                 # pendulum only
-///     files = ["aircraft_x_1.csv", "aircraft_x_2.csv"]
-///     cradle_files = ["cradle_x_1.csv"]
+/// A swing test. Study table `[swing_test]`.
 struct SwingTest {
   std::string name = "aircraft";
-  double mass = 0.0, cradle_mass = 0.0;
+  double mass = 0.0, cradle_mass = 0.0;  ///< of the aircraft alone, of the cradle; 0: none [kg]
   double gravity = kGravity;
   double sigma_mass = 0.002, sigma_filar_distance = 0.002, sigma_length = 0.005;
   std::string channel;
@@ -73,8 +50,7 @@ struct SwingTest {
   std::uint64_t seed = 1;
   std::vector<SwingAxis> axes;
 
-  /// @throws InputError for values that make no sense.
-  [[nodiscard]] static SwingTest read(const StudyTable& table);
+  [[nodiscard]] static const KeyTable<SwingTest>& keys();
 };
 
 /// The angle of a recorded swing [rad]: the given channel, or the turn about the main axis of a motion in quaternions

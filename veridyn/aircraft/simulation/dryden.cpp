@@ -7,6 +7,7 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::aircraft {
 
@@ -32,13 +33,47 @@ double decaying_moment(int n, double theta) {
 
 }  // namespace
 
+namespace {
+
+const std::vector<std::pair<std::string, DrydenSettings>> kSettings = {
+    {"none", {}},
+    {"low_light", {200, 200, 50, 1.06, 1.06, 0.7}},
+    {"low_moderate", {200, 200, 50, 2.12, 2.12, 1.4}},
+    {"medium_light", {533, 533, 533, 1.5, 1.5, 1.5}},
+    {"medium_moderate", {533, 533, 533, 3.0, 3.0, 3.0}}};
+
+const KeyTable<DrydenSettings>& dryden_keys() {
+  using S = DrydenSettings;
+  static const auto table = KeyTable<S>("turbulence")
+                                .number("Lu", &S::Lu, "m", kPositive, "scale length along x")
+                                .required()
+                                .number("Lv", &S::Lv, "m", kPositive, "along y")
+                                .otherwise("`Lu`")
+                                .number("Lw", &S::Lw, "m", kPositive, "along z")
+                                .required()
+                                .number("sigma_u", &S::sigma_u, "m/s", kNotNegative, "standard deviation along x")
+                                .required()
+                                .number("sigma_v", &S::sigma_v, "m/s", kNotNegative, "along y")
+                                .otherwise("`sigma_u`")
+                                .number("sigma_w", &S::sigma_w, "m/s", kNotNegative, "along z")
+                                .required()
+                                .check([](const StudyTable& t, S& s) {
+                                  if (!t.has("Lv")) s.Lv = s.Lu;
+                                  if (!t.has("sigma_v")) s.sigma_v = s.sigma_u;
+                                });
+  return table;
+}
+
+}  // namespace
+
+StudyKey turbulence_key(std::vector<std::string> others, std::string says) {
+  for (const auto& [name, settings] : kSettings) others.push_back(name);
+  const std::string first = others.front();
+  return {"turbulence", "", quoted_list(others, "`") + ", `{ Lu, Lv, Lw, sigma_u, sigma_v, sigma_w }`",
+          quoted_list({first}), std::move(says)};
+}
+
 DrydenSettings dryden_settings(std::string_view name, std::string_view place) {
-  static const std::vector<std::pair<std::string, DrydenSettings>> kSettings = {
-      {"none", {}},
-      {"low_light", {200, 200, 50, 1.06, 1.06, 0.7}},
-      {"low_moderate", {200, 200, 50, 2.12, 2.12, 1.4}},
-      {"medium_light", {533, 533, 533, 1.5, 1.5, 1.5}},
-      {"medium_moderate", {533, 533, 533, 3.0, 3.0, 3.0}}};
   std::vector<std::string> names;
   for (const auto& [known, settings] : kSettings) {
     if (known == name) return settings;
@@ -50,20 +85,7 @@ DrydenSettings dryden_settings(std::string_view name, std::string_view place) {
 DrydenSettings read_dryden(const StudyTable& table, std::string_view key) {
   if (!table.has(key)) return {};
   if (!table.is_table(key)) return dryden_settings(table.text(key), table.place(key));
-  const StudyTable t = table.table(key);
-  DrydenSettings s;
-  s.Lu = t.positive("Lu", "m");
-  s.Lv = t.positive_or("Lv", "m", s.Lu);
-  s.Lw = t.positive("Lw", "m");
-  const auto sigma = [&t](std::string_view name, double otherwise) {
-    const double value = otherwise < 0.0 ? t.number(name, "m/s") : t.number_or(name, "m/s", otherwise);
-    if (!(value >= 0.0)) t.fail(name, fmt::format("= {:g} must be >= 0", value));
-    return value;
-  };
-  s.sigma_u = sigma("sigma_u", -1.0);
-  s.sigma_v = sigma("sigma_v", s.sigma_u);
-  s.sigma_w = sigma("sigma_w", -1.0);
-  return s;
+  return dryden_keys().read(table.table(key));
 }
 
 DrydenStep::DrydenStep(double theta) : decay(std::exp(-theta)), coupling(theta * decay) {

@@ -23,7 +23,10 @@ struct DrydenSettings {
 /// @throws InputError naming the nearest one.
 [[nodiscard]] DrydenSettings dryden_settings(std::string_view name, std::string_view place);
 
-/// Reads `key` of a table: a name as above, or a table { Lu, Lv, Lw, sigma_u, sigma_v, sigma_w } ([m], [m/s]).
+/// The key `turbulence` of a table of keys; `others` are names besides those above, the first the default.
+[[nodiscard]] StudyKey turbulence_key(std::vector<std::string> others, std::string says);
+
+/// Reads such a key: a name as above, or a table { Lu, Lv, Lw, sigma_u, sigma_v, sigma_w } ([m], [m/s]).
 [[nodiscard]] DrydenSettings read_dryden(const StudyTable& table, std::string_view key);
 
 /// The two-state filter of lateral and vertical gusts over one step, in normalised states.

@@ -11,7 +11,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/nearest.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::aircraft {
 
@@ -216,62 +216,82 @@ std::vector<Manoeuvre> default_plan(double duration, const PerSurface<double>& a
   return plan;
 }
 
-std::vector<Manoeuvre> read_manoeuvres(const StudyTable& flight, const PerSurface<double>& amplitudes) {
-  const std::vector<std::string> kinds = {"doublet", "3211", "multisine", "turn", "pulse"};
-  const std::vector<std::string> names(kSurfaceNames.begin(), kSurfaceNames.end());
-  std::vector<Manoeuvre> out;
-  for (const StudyTable& t : flight.tables("manoeuvre")) {
-    Manoeuvre m;
-    static_cast<void>(t.text("kind"));
-    const std::string kind = t.choice_or("kind", kinds, "doublet");
-    m.kind = static_cast<ManoeuvreKind>(std::find(kinds.begin(), kinds.end(), kind) - kinds.begin());
-    m.start = t.number("start", "s");
-    if (!(m.start >= 0.0)) t.fail("start", fmt::format("= {:g} must be >= 0", m.start));
-    const bool timed = m.kind == ManoeuvreKind::kMultisine || m.kind == ManoeuvreKind::kTurn;
-    if (timed) m.duration = t.positive("duration", "s");
-    if (m.kind == ManoeuvreKind::kTurn) {
-      m.bank = t.number("bank", "rad");
-      if (!(std::abs(m.bank) <= 60 * kDegree)) t.fail("bank", "is more than 60 deg");
-      out.push_back(m);
-      continue;
-    }
-    for (const std::string& name : t.texts("surfaces")) {
-      const auto at = std::find(names.begin(), names.end(), name);
-      if (at == names.end()) t.fail("surfaces", fmt::format("unknown surface '{}'{}", name, suggestion(name, names)));
-      m.surfaces.push_back(static_cast<Surface>(at - names.begin()));
-    }
-    if (m.surfaces.empty()) t.fail("surfaces", "names no surface");
-    const bool throttle_only = m.surfaces == std::vector<Surface>{Surface::kThrottle};
-    if (t.has("amplitude")) {
-      m.amplitude = t.numbers("amplitude", throttle_only ? "1" : "rad");
-      if (m.amplitude.size() == 1) m.amplitude.resize(m.surfaces.size(), m.amplitude[0]);
-      if (m.amplitude.size() != m.surfaces.size()) {
-        t.fail("amplitude", fmt::format("has {} numbers, expected 1 or {}", m.amplitude.size(), m.surfaces.size()));
-      }
-    } else {
-      for (const Surface s : m.surfaces) m.amplitude.push_back(amplitudes[s]);
-    }
-    if (m.kind == ManoeuvreKind::kMultisine) {
-      if (t.has("band")) {
-        const std::vector<double> band = t.numbers("band", "1/s");
-        if (band.size() != 2 || !(band[0] > 0.0 && band[1] > band[0])) {
-          t.fail("band", "is not [lowest, highest] in Hz with 0 < lowest < highest");
-        }
-        m.f_min = band[0];
-        m.f_max = band[1];
-      }
-      const double first = std::ceil(m.f_min * m.duration - 1e-9);
-      const double last = std::floor(m.f_max * m.duration + 1e-9);
-      if (last - first + 1.0 < static_cast<double>(m.surfaces.size())) {
-        t.fail("duration", fmt::format("of {:g} s is too short for {} orthogonal signals between {:g} and {:g} Hz",
-                                       m.duration, m.surfaces.size(), m.f_min, m.f_max));
-      }
-    } else {
-      m.pulse = t.positive_or("pulse", "s", m.pulse);
-    }
-    out.push_back(m);
+namespace {
+
+/// Refuses keys that its kind has not, and wants those that it needs.
+void check_keys_of_kind(const StudyTable& table, const Manoeuvre& m) {
+  const bool turn = m.kind == ManoeuvreKind::kTurn, multisine = m.kind == ManoeuvreKind::kMultisine;
+  const std::tuple<const char*, bool, bool> uses[] = {{"duration", turn || multisine, true},
+                                                      {"bank", turn, true},
+                                                      {"surfaces", !turn, true},
+                                                      {"amplitude", !turn, false},
+                                                      {"pulse", !turn && !multisine, false},
+                                                      {"band", multisine, false}};
+  std::vector<std::string> missing;
+  for (const auto& [key, belongs, needed] : uses) {
+    if (!belongs && table.has(key)) table.fail(key, fmt::format("is no key of a {}", table.text("kind")));
+    if (belongs && needed && !table.has(key)) missing.emplace_back(key);
   }
-  return out;
+  refuse_missing(table, missing);
+}
+
+void check_manoeuvre(const StudyTable& table, Manoeuvre& m) {
+  check_keys_of_kind(table, m);
+  if (!(std::abs(m.bank) <= 60 * kDegree)) table.fail("bank", "is more than 60 deg");
+  if (m.kind == ManoeuvreKind::kTurn) return;
+  if (m.surfaces.empty()) table.fail("surfaces", "names no surface");
+  if (m.amplitude.size() == 1) m.amplitude.resize(m.surfaces.size(), m.amplitude[0]);
+  if (!m.amplitude.empty() && m.amplitude.size() != m.surfaces.size())
+    table.fail("amplitude", fmt::format("has {} numbers, expected 1 or {}", m.amplitude.size(), m.surfaces.size()));
+  if (m.kind != ManoeuvreKind::kMultisine) return;
+  const double first = std::ceil(m.f_min * m.duration - 1e-9), last = std::floor(m.f_max * m.duration + 1e-9);
+  if (last - first + 1.0 < static_cast<double>(m.surfaces.size()))
+    table.fail("duration", fmt::format("of {:g} s is too short for {} orthogonal signals between {:g} and {:g} Hz",
+                                       m.duration, m.surfaces.size(), m.f_min, m.f_max));
+}
+
+void read_amplitude(const StudyTable& table, const std::string& key, Manoeuvre& m) {
+  m.amplitude = table.numbers(key, m.surfaces == std::vector<Surface>{Surface::kThrottle} ? "1" : "rad");
+}
+
+void read_band(const StudyTable& table, const std::string& key, Manoeuvre& m) {
+  const std::vector<double> band = table.numbers(key, "1/s");
+  if (band.size() != 2 || !(band[0] > 0.0 && band[1] > band[0]))
+    table.fail(key, "is not [lowest, highest] in Hz with 0 < lowest < highest");
+  m.f_min = band[0];
+  m.f_max = band[1];
+}
+
+}  // namespace
+
+const KeyTable<Manoeuvre>& Manoeuvre::keys() {
+  using M = Manoeuvre;
+  using enum ManoeuvreKind;
+  static const auto table =
+      KeyTable<M>("manoeuvre", "What the pilot does beside keeping the aircraft straight and level.")
+          .choice(
+              "kind", &M::kind,
+              {{"doublet", kDoublet}, {"3211", k3211}, {"multisine", kMultisine}, {"turn", kTurn}, {"pulse", kPulse}},
+              "`multisine`: sums of sines on several surfaces at once that are orthogonal to each other; `pulse`: one, "
+              "held")
+          .required()
+          .number("start", &M::start, "s", kNotNegative, "when it begins")
+          .required()
+          .number("duration", &M::duration, "s", kPositive, "of multisines and turns")
+          .otherwise("required for them")
+          .choices("surfaces", &M::surfaces, choices_of<Surface>(kSurfaceNames),
+                   "all but turns; in doublets and 3-2-1-1 one after another, with two seconds between")
+          .otherwise("required for them")
+          .other({"amplitude", "rad", "one number, or one for each surface",
+                  "alpha by about 3 deg, a roll rate of 20 deg/s, sideslip of 4 deg; at most half of the travel",
+                  "largest deflection; of the throttle alone without unit", true},
+                 read_amplitude)
+          .number("pulse", &M::pulse, "s", kPositive, "length of one unit of a doublet, 3-2-1-1 or pulse")
+          .other({"band", "Hz", "two frequencies", "[0.1, 2]", "of a multisine"}, read_band)
+          .number("bank", &M::bank, "rad", kAnyNumber, "of a turn, positive to the right; at most 60 deg")
+          .otherwise("required for them")
+          .check(check_manoeuvre);
+  return table;
 }
 
 double Multisine::value(double t) const { return gain * raw_value(*this, t); }

@@ -42,6 +42,8 @@ struct Manoeuvre {
   double bank = 0.0;  ///< of a turn [rad]; positive to the right
 
   [[nodiscard]] double end() const;
+  /// Of one `[[flight.manoeuvre]]`; what has no amplitude is left without.
+  [[nodiscard]] static const KeyTable<Manoeuvre>& keys();
 };
 
 /// Largest deflections that keep a small excitation small, from the linear model about a trim: the elevator changes
@@ -53,18 +55,6 @@ struct Manoeuvre {
 /// elevator, then on aileron and rudder, 3-2-1-1 and doublets on each surface, a change of throttle, a turn each way
 /// and straight legs. Repeated for longer flights; what does not end before `duration` is left out.
 [[nodiscard]] std::vector<Manoeuvre> default_plan(double duration, const PerSurface<double>& amplitudes);
-
-/// Reads `[[flight.manoeuvre]]`:
-///
-///     kind = "multisine"                 # doublet, 3211, multisine, turn, pulse
-///     start = 20                         # [s]
-///     duration = 30                      # [s] multisine and turn
-///     surfaces = ["aileron", "rudder"]   # elevator, aileron, rudder, throttle
-///     amplitude = "4 deg"                # one, or one per surface; left out: see default_amplitudes
-///     pulse = 0.5                        # [s] doublet, 3211, pulse
-///     band = [0.1, 2.0]                  # [Hz] multisine
-///     bank = "25 deg"                    # turn
-[[nodiscard]] std::vector<Manoeuvre> read_manoeuvres(const StudyTable& flight, const PerSurface<double>& amplitudes);
 
 /// One multisine: harmonics of 1/duration with phases of low peak.
 struct Multisine {

@@ -24,24 +24,27 @@ struct ModelChange {
   std::string text;  ///< what changed, in words: "Cm_alpha -0.7 to -0.35"
 };
 
-/// The flight to simulate.
+/// The flight to simulate. Study table `[flight]`.
 struct SimulationOptions {
   Subject subject;
   double duration = 300.0;    ///< [s]
-  double altitude = 100.0;    ///< above sea level at the start, kept by the pilot [m]
-  double ground = 0.0;        ///< height of the ground above sea level [m]
+  double altitude = 100.0;    ///< above sea level [m]
+  double ground = 0.0;        ///< above sea level [m]
   double airspeed = 0.0;      ///< [m/s]; 0: where the lift coefficient is 0.5
-  double heading = 0.0;       ///< at the start [rad]
-  double step = 0.0025;       ///< of the integration [s]
-  double truth_rate = 100.0;  ///< of the truth recording [Hz]; rounded to whole steps
+  double heading = 0.0;       ///< [rad]
+  double step = 0.0025;       ///< [s]
+  double truth_rate = 100.0;  ///< [Hz]; rounded to whole steps
   double gravity = kGravity;
-  double excitation_gain = 0.3;  ///< share of its feedback that the pilot keeps on a surface while it is excited
+  double excitation_gain = 0.3;
   WindSettings wind;
   DrydenSettings turbulence;
   SensorSet sensors = reference_sensors();
   std::optional<std::vector<Manoeuvre>> manoeuvres;  ///< none: `default_plan`
   std::vector<ModelChange> changes = {};             ///< by time
   std::uint64_t seed = 1;
+
+  /// Of an object that has its subject.
+  [[nodiscard]] static const KeyTable<SimulationOptions>& keys();
 };
 
 /// Why a simulated flight ended.

@@ -1,10 +1,10 @@
 #include "veridyn/aircraft/simulation/wind.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::aircraft {
 
@@ -26,21 +26,18 @@ Eigen::Vector3d Wind::at(double height) const {
   return wind;
 }
 
-WindSettings read_wind(const StudyTable& flight) {
-  WindSettings w;
-  if (flight.has("wind")) {
-    const std::vector<double> mean = flight.numbers("wind", "m/s");
-    if (mean.size() != 3) {
-      flight.fail("wind", fmt::format("has {} numbers, expected 3: [north, east, down]", mean.size()));
-    }
-    w.mean = {mean[0], mean[1], mean[2]};
-  }
-  w.shear_exponent = flight.number_or("wind_shear", "1", 0.0);
-  w.shear_reference = flight.positive_or("wind_shear_reference", "m", w.shear_reference);
-  w.drift_sigma = flight.number_or("wind_drift", "m/s", 0.0);
-  if (!(w.drift_sigma >= 0.0)) flight.fail("wind_drift", fmt::format("= {:g} must be >= 0", w.drift_sigma));
-  w.drift_time = flight.positive_or("wind_drift_time", "s", w.drift_time);
-  return w;
+const KeyTable<WindSettings>& WindSettings::keys() {
+  using W = WindSettings;
+  static const auto table =
+      KeyTable<W>("flight")
+          .numbers("wind", &W::mean, "m/s", kAnyNumber, "where the air moves to: north, east, down")
+          .number("wind_shear", &W::shear_exponent, "1", kAnyNumber,
+                  "exponent of the power law by which wind grows with height; 0: none, 1/7 over open land")
+          .number("wind_shear_reference", &W::shear_reference, "m", kPositive, "height above ground where `wind` holds")
+          .number("wind_drift", &W::drift_sigma, "m/s", kNotNegative,
+                  "slow random change, standard deviation of each horizontal component")
+          .number("wind_drift_time", &W::drift_time, "s", kPositive, "its correlation time");
+  return table;
 }
 
 }  // namespace veridyn::aircraft

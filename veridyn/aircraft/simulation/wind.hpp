@@ -7,13 +7,16 @@
 
 namespace veridyn::aircraft {
 
-/// The mean wind: constant, with height by a power law, and with a slow random drift of its horizontal components.
+/// The mean wind: constant, with height by a power law, and with a slow random drift of its horizontal components. Keys
+/// of the study table `[flight]`.
 struct WindSettings {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();  ///< where the air moves to: north, east, down [m/s]
-  double shear_exponent = 0.0;    ///< wind grows with (height / reference)^exponent; 0: none, 1/7 over open land
-  double shear_reference = 10.0;  ///< height above ground where the mean holds [m]
-  double drift_sigma = 0.0;       ///< standard deviation of the drift, each component [m/s]
-  double drift_time = 120.0;      ///< its correlation time [s]
+  double shear_exponent = 0.0;                     ///< wind grows with (height / reference)^exponent
+  double shear_reference = 10.0;                   ///< [m]
+  double drift_sigma = 0.0;                        ///< [m/s]
+  double drift_time = 120.0;                       ///< [s]
+
+  [[nodiscard]] static const KeyTable<WindSettings>& keys();
 };
 
 /// The mean wind along a flight. The drift is a Gauss-Markov process, exactly discretised, that starts at zero.
@@ -29,9 +32,5 @@ class Wind {
   numerics::RandomStream random_;
   Eigen::Vector2d drift_ = Eigen::Vector2d::Zero();
 };
-
-/// Reads wind keys of a `[flight]` table: `wind = [n, e, d]` [m/s], `wind_shear` (exponent), `wind_shear_reference`
-/// [m], `wind_drift` [m/s], `wind_drift_time` [s].
-[[nodiscard]] WindSettings read_wind(const StudyTable& flight);
 
 }  // namespace veridyn::aircraft

@@ -27,19 +27,15 @@ enum class TrackFilter {
 /// "model-free", "guarded".
 [[nodiscard]] std::string_view to_string(TrackFilter filter);
 
-/// How a coefficient is followed on line. Study table `[track]`: the keys of estimation::TrackerOptions and these;
-/// every one is optional. Rows come at the rate of `FlightSignals::stride`.
+/// How a coefficient is followed on line. Study table `[track]`. Rows come at the rate of `FlightSignals::stride`.
 struct TrackOptions : estimation::TrackerOptions {
-  std::vector<Coefficient> coefficients = {};       ///< `coefficients`; empty: all that the subject models
-  std::string estimate_file;                        ///< `estimate`: estimate.json to start from (hybrid start)
-  AirDataSource air_data = AirDataSource::kFilter;  ///< `air_data`: "filter", "sensors"
-  TrackFilter filter = TrackFilter::kModelFree;     ///< `filter`: "model-free", "guarded"
-  /// `start_model`: what the guarded filter knows before anything is tracked: "study" (the subject's values, or
-  /// those of `reconstruct.estimate_file`) or "none".
-  bool starts_from_study = true;
+  std::vector<Coefficient> coefficients = {};  ///< empty: all that the subject models
+  std::string estimate_file;                   ///< estimate.json to start from (hybrid start)
+  AirDataSource air_data = AirDataSource::kFilter;
+  TrackFilter filter = TrackFilter::kModelFree;
+  bool starts_from_study = true;  ///< whether the guarded filter has a model before anything is tracked
 
-  /// @throws InputError naming file, line and key.
-  [[nodiscard]] static TrackOptions read(const StudyTable& table);
+  [[nodiscard]] static const KeyTable<TrackOptions>& keys();
 };
 
 /// One aerodynamic coefficient followed row by row, watched for changes, with its history.

@@ -3,21 +3,27 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::estimation {
 
-GuardOptions GuardOptions::read(const StudyTable& table) {
-  GuardOptions o;
-  o.window_s = table.positive_or("window", "s", o.window_s);
-  o.false_alarms_per_hour = table.positive_or("false_alarms_per_hour", "1", o.false_alarms_per_hour);
-  o.tolerance = table.positive_or("tolerance", "1", o.tolerance);
-  if (!(o.tolerance >= 1.0)) table.fail("tolerance", "must be >= 1");
-  if (!(o.false_alarms_per_hour * o.window_s < 360.0)) {
-    table.fail("false_alarms_per_hour", "asks for an alarm in more than a tenth of the windows");
-  }
-  o.return_after_s = table.positive_or("return_after", "s", o.return_after_s);
-  return o;
+const KeyTable<GuardOptions>& GuardOptions::keys() {
+  using O = GuardOptions;
+  static const auto table =
+      KeyTable<O>("guard", "When the model of a guarded filter is no longer trusted, and when it is again.")
+          .number("window", &O::window_s, "s", kPositive, "over which squared innovations are summed")
+          .number("false_alarms_per_hour", &O::false_alarms_per_hour, "1", kPositive,
+                  "of a sound model: sets the chi-square limit")
+          .number("tolerance", &O::tolerance, "1", {.low = 1.0},
+                  "on the limit: no model is exact, and a variance 30 % too large does no harm")
+          .number("return_after", &O::return_after_s, "s", kPositive,
+                  "of sound windows in a row before the model is trusted again")
+          .check([](const StudyTable& t, O& o) {
+            if (!(o.false_alarms_per_hour * o.window_s < 360.0))
+              t.fail("false_alarms_per_hour", "asks for an alarm in more than a tenth of the windows");
+          });
+  return table;
 }
 
 void InnovationGuard::restart(double t, bool trusted) noexcept {

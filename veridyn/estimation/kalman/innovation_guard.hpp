@@ -7,20 +7,14 @@
 
 namespace veridyn::estimation {
 
-/// When the model of a filter is no longer trusted, and when it is trusted again. Study table of the same keys:
-///
-///     window = "1 s"             # over which squared innovations are summed
-///     false_alarms_per_hour = 0.1  # of a sound model: sets the chi-square limit
-///     tolerance = 1.3            # on the limit: no model is exact, and a variance 30 % too large does no harm
-///     return_after = "10 s"      # of sound windows in a row before the model is trusted again
+/// When the model of a filter is no longer trusted, and when it is trusted again.
 struct GuardOptions {
   double window_s = 1.0;
   double false_alarms_per_hour = 0.1;
   double tolerance = 1.3;
   double return_after_s = 10.0;
 
-  /// @throws InputError for values that make no sense.
-  [[nodiscard]] static GuardOptions read(const StudyTable& table);
+  [[nodiscard]] static const KeyTable<GuardOptions>& keys();
 };
 
 /// Watches the normalised innovations squared (NIS, nu^2 / S) of a filter, sensor by sensor.

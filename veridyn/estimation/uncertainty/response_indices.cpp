@@ -9,22 +9,15 @@
 
 #include "veridyn/core/index.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/numerics/batches/block_store.hpp"
 #include "veridyn/numerics/batches/fingerprint.hpp"
 
 namespace veridyn::estimation {
 namespace {
 
-constexpr double kDefaultRange = 0.1;
 /// Runs last a tenth of a second, so that a killed process loses little.
 constexpr std::size_t kRunsPerBlock = 32;
-
-double range_of(const StudyTable& table, double otherwise) {
-  const double share = table.number_or("range", "1", otherwise);
-  if (!(share > 0.0 && share < 1.0))
-    table.fail("range", fmt::format("= {:g} must be above 0 and below 1; \"10 %\" is 0.1", share));
-  return share;
-}
 
 /// About its nominal value.
 IndexInput within(IndexInput input, double share, const StudyTable& table, const char* key) {
@@ -35,18 +28,19 @@ IndexInput within(IndexInput input, double share, const StudyTable& table, const
   return input;
 }
 
-IndexInput read_input(const StudyTable& table, std::span<const IndexInput> known, double share) {
+IndexInput input_of(const GivenInputs::Input& given, std::span<const IndexInput> known, double share) {
+  const StudyTable& table = given.table;
   std::vector<std::string> names;
   for (const IndexInput& k : known) names.push_back(k.name);
-  const std::string name = table.text("parameter");
-  const auto found = std::find(names.begin(), names.end(), name);
+  const auto found = std::find(names.begin(), names.end(), given.parameter);
   if (found == names.end())
-    table.fail("parameter", fmt::format("'{}' is not one that can vary here{}", name, suggestion(name, names, 40)));
+    table.fail("parameter", fmt::format("'{}' is not one that can vary here{}", given.parameter,
+                                        suggestion(given.parameter, names, 40)));
   IndexInput input = known[found - names.begin()];
   input.place = table.place("parameter");
   const bool low = table.has("low"), high = table.has("high");
-  if (!low && !high) return within(std::move(input), range_of(table, share), table, "parameter");
-  if (table.has("range")) table.fail("range", "and low, high exclude each other");
+  if (!low && !high) return within(std::move(input), given.range > 0.0 ? given.range : share, table, "parameter");
+  if (given.range > 0.0) table.fail("range", "and low, high exclude each other");
   if (!low || !high) table.fail(low ? "high" : "low", "is missing: a range has two ends");
   input.low = table.number("low", input.unit);
   input.high = table.number("high", input.unit);
@@ -54,6 +48,22 @@ IndexInput read_input(const StudyTable& table, std::span<const IndexInput> known
     table.fail("low",
                fmt::format("= {:g} {} must be below high = {:g} {}", input.low, input.unit, input.high, input.unit));
   return input;
+}
+
+const KeyTable<GivenInputs::Input>& input_keys() {
+  using I = GivenInputs::Input;
+  // In the unit of the parameter, which only who reads it knows.
+  const auto later = [](const StudyTable&, const std::string&, I&) {};
+  static const auto table =
+      KeyTable<I>("input", "Each number that varies.")
+          .text("parameter", &I::parameter, "its name")
+          .required()
+          .number("range", &I::range, "1", between(0.0, 1.0), "share of the nominal value up and down")
+          .otherwise("that of all")
+          .other({"low", "SI", "", "by `range`", "or both bounds", true}, later)
+          .other({"high", "SI", "", "by `range`", "", true}, later)
+          .check([](const StudyTable& t, I& input) { input.table = t; });
+  return table;
 }
 
 /// The points in the inputs' units.
@@ -98,22 +108,36 @@ bool moves(const Eigen::VectorXd& values, double negligible) {
 
 }  // namespace
 
-std::vector<IndexInput> read_index_inputs(const StudyTable& table, std::span<const IndexInput> known,
-                                          std::span<const std::string> defaults) {
-  if (table.has("samples")) table.fail("samples", "is of muscles; here it is index_samples");
-  const double share = range_of(table, kDefaultRange);
+const KeyTable<GivenInputs>& GivenInputs::keys() {
+  using G = GivenInputs;
+  static const auto table =
+      KeyTable<G>("sensitivity")
+          .number(
+              "range", &G::range, "1", between(0.0, 1.0),
+              "share of the nominal value by which inputs go up and down that do not say otherwise; \"10 %\" is 0.1")
+          .tables("input", input_keys(),
+                  [](const StudyTable& one, G& g) { g.inputs.push_back(input_keys().read(one)); })
+          .check([](const StudyTable& t, G& g) {
+            if (t.has("samples")) t.fail("samples", "is of muscles; here it is index_samples");
+            g.table = t;
+          });
+  return table;
+}
+
+std::vector<IndexInput> index_inputs(const GivenInputs& given, std::span<const IndexInput> known,
+                                     std::span<const std::string> defaults) {
   std::vector<IndexInput> inputs;
-  for (const StudyTable& one : table.tables("input")) {
-    IndexInput input = read_input(one, known, share);
+  for (const GivenInputs::Input& one : given.inputs) {
+    IndexInput input = input_of(one, known, given.range);
     for (const IndexInput& other : inputs)
-      if (other.name == input.name) one.fail("parameter", fmt::format("'{}' comes twice", input.name));
+      if (other.name == input.name) one.table.fail("parameter", fmt::format("'{}' comes twice", input.name));
     inputs.push_back(std::move(input));
   }
   if (!inputs.empty()) return inputs;
   for (const IndexInput& k : known) {
     if (std::find(defaults.begin(), defaults.end(), k.name) == defaults.end()) continue;
-    inputs.push_back(within(k, share, table, "range"));
-    inputs.back().place = table.place("range");
+    inputs.push_back(within(k, given.range, given.table, "range"));
+    inputs.back().place = given.table.place("range");
   }
   return inputs;
 }

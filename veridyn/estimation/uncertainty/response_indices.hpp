@@ -28,21 +28,27 @@ struct IndexInput {
   std::string place = {};  ///< "study.toml:14: sensitivity.input", for messages
 };
 
-/// Reads of `[sensitivity]`
-///
-///     range = "10 %"             # by which inputs go up and down that do not say otherwise
-///     [[sensitivity.input]]      # each number that varies; without any, `defaults`
-///     parameter = "C_f"
-///     range = "5 %"              # of the nominal value, or
-///     low = 50000                # both bounds, with units
-///     high = 70000
-///
+/// What varies, as a study has it. Keys of the table `[sensitivity]`.
+struct GivenInputs {
+  /// One `[[sensitivity.input]]`.
+  struct Input {
+    std::string parameter;
+    double range = 0.0;               ///< 0: that of all
+    StudyTable table = StudyTable();  ///< may have `low` and `high`, in the unit of the parameter
+  };
+  double range = 0.1;  ///< share of the nominal value
+  std::vector<Input> inputs = {};
+  StudyTable table = StudyTable();
+
+  [[nodiscard]] static const KeyTable<GivenInputs>& keys();
+};
+
 /// @param known     what may vary: name, unit and nominal value
 /// @param defaults  of these, those that vary where the study names none
 /// @throws InputError with file, line and key: a name that is not known, with the nearest; one that comes twice; bounds
 /// that cross; a range of nothing.
-[[nodiscard]] std::vector<IndexInput> read_index_inputs(const StudyTable& table, std::span<const IndexInput> known,
-                                                        std::span<const std::string> defaults);
+[[nodiscard]] std::vector<IndexInput> index_inputs(const GivenInputs& given, std::span<const IndexInput> known,
+                                                   std::span<const std::string> defaults);
 
 /// One number that a simulation gives.
 struct Response {

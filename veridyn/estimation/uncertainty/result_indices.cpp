@@ -8,7 +8,7 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
-#include "veridyn/core/study_numbers.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::estimation {
 namespace {
@@ -39,25 +39,37 @@ WideCount count_wide(const ResultIndices& r, const std::vector<std::string>* inp
 
 }  // namespace
 
+const KeyTable<IndexOptions>& IndexOptions::keys() {
+  using O = IndexOptions;
+  constexpr long long kMost = 10000000;
+  const auto variance = [](auto member) {
+    return [member](O & o) -> auto& { return o.variance.*member; };
+  };
+  using V = numerics::SensitivityOptions;
+  static const auto table =
+      KeyTable<O>("sensitivity")
+          .choice(
+              "method", &O::method,
+              {{"variance", IndexMethod::kVariance}, {"morris", IndexMethod::kMorris}, {"none", IndexMethod::kNone}},
+              "`variance`: first and total order with intervals; `morris`: elementary effects, a screening at a "
+              "small share of the cost")
+          .count("index_samples", variance(&V::samples), 2, kMost,
+                 "N of the N (inputs + 2) points at which results are needed; a power of two is best")
+          .count("replicates", variance(&V::replicates), 2, kMost,
+                 "independent parts of these samples, whose spread makes the intervals")
+          .number("level", variance(&V::level), "1", between(0.0, 1.0), "of these intervals")
+          .count("trajectories", &O::morris_trajectories, 1, kMost, "of Morris: trajectories (inputs + 1) points")
+          .count("levels", &O::morris_levels, 2, kMost, "of Morris' grid; even")
+          .check([](const StudyTable& t, O& o) {
+            if (o.morris_levels % 2 != 0) t.fail("levels", fmt::format("= {} must be even", o.morris_levels));
+          });
+  return table;
+}
+
 IndexOptions read_index_options(const StudyTable& table, std::uint64_t seed) {
-  IndexOptions o;
-  constexpr std::array kMethods{std::pair{"variance", IndexMethod::kVariance},
-                                std::pair{"morris", IndexMethod::kMorris}, std::pair{"none", IndexMethod::kNone}};
-  std::vector<std::string> words;
-  for (const auto& [word, method] : kMethods) words.emplace_back(word);
-  const std::string chosen = table.choice_or("method", words, words.front());
-  for (const auto& [word, method] : kMethods)
-    if (word == chosen) o.method = method;
-  o.variance.samples = count_or(table, "index_samples", o.variance.samples, 2);
-  o.variance.replicates = count_or(table, "replicates", o.variance.replicates, 2);
-  o.variance.level = table.number_or("level", "1", o.variance.level);
-  if (!(o.variance.level > 0.0 && o.variance.level < 1.0))
-    table.fail("level", fmt::format("= {:g} must be above 0 and below 1", o.variance.level));
-  o.variance.seed = seed;
-  o.morris_trajectories = count_or(table, "trajectories", o.morris_trajectories, 1);
-  o.morris_levels = count_or(table, "levels", o.morris_levels, 2);
-  if (o.morris_levels % 2 != 0) table.fail("levels", fmt::format("= {} must be even", o.morris_levels));
-  return o;
+  IndexOptions options = IndexOptions::keys().read(table);
+  options.variance.seed = seed;
+  return options;
 }
 
 bool wide_interval(double index, double low, double high) { return !(high - low <= kWideInterval * std::abs(index)); }

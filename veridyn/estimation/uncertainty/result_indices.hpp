@@ -18,25 +18,17 @@ enum class IndexMethod {
   kNone,
 };
 
-/// How indices are computed.
+/// How indices are computed. Keys of the study table `[sensitivity]`.
 struct IndexOptions {
   IndexMethod method = IndexMethod::kVariance;
   numerics::SensitivityOptions variance = {};
   std::size_t morris_trajectories = 20;
   std::size_t morris_levels = 4;
+
+  [[nodiscard]] static const KeyTable<IndexOptions>& keys();
 };
 
-/// Reads of `[sensitivity]`
-///
-///     method = "variance"    # first and total indices; "morris"; "none"
-///     index_samples = 512    # N of N (inputs + 2) points; a power of two is best
-///     replicates = 16        # independent parts of these samples, whose spread makes the intervals
-///     level = 0.95           # of these intervals
-///     trajectories = 20      # of Morris
-///     levels = 4             # of Morris' grid
-///
-/// @param seed  of the design
-/// @throws InputError with file, line and key.
+/// The keys of IndexOptions. @param seed  of the design
 [[nodiscard]] IndexOptions read_index_options(const StudyTable& table, std::uint64_t seed);
 
 /// Indices of one result.

@@ -6,6 +6,7 @@
 
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::aircraft {
@@ -106,7 +107,7 @@ TEST(CoefficientUncertainty, IsReproducibleAndLeavesOutWhatCannotBeMeasured) {
 TEST(CoefficientUncertainty, ReadsItsTableAndRefusesNonsense) {
   const Study study =
       Study::parse("[uncertainty]\ndraws = 1000\nsigma = { thrust = 0.5, alpha = \"1 deg\" }\n", "s.toml");
-  const UncertaintyOptions options = UncertaintyOptions::read(study.root().table("uncertainty"));
+  const UncertaintyOptions options = UncertaintyOptions::keys().read(study.root().table("uncertainty"));
   EXPECT_EQ(options.draws, 1000U);
   EXPECT_NEAR(*options.sigma[0], M_PI / 180.0, 1e-15);
   FlightSignals signals = made_signals();
@@ -117,7 +118,7 @@ TEST(CoefficientUncertainty, ReadsItsTableAndRefusesNonsense) {
            {"[uncertainty.sigma]\nthrust = -1\n", "s.toml:2: uncertainty.sigma.thrust: = -1 must be >= 0"}}) {
     const Study wrong = Study::parse(text, "s.toml");
     try {
-      static_cast<void>(UncertaintyOptions::read(wrong.root().table("uncertainty")));
+      static_cast<void>(UncertaintyOptions::keys().read(wrong.root().table("uncertainty")));
       FAIL();
     } catch (const InputError& e) {
       EXPECT_EQ(e.what(), message);

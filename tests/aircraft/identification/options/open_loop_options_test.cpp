@@ -7,13 +7,14 @@
 
 #include "veridyn/aircraft/identification/validation/validation.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::aircraft {
 namespace {
 
 OpenLoopOptions open_loop_of(const std::string& keys) {
   const Study study = Study::parse("[validate]\n" + keys, "s.toml");
-  return ValidationOptions::read(study.root().table("validate")).open_loop;
+  return ValidationOptions::keys().read(study.root().table("validate")).open_loop;
 }
 
 TEST(OpenLoopOptions, AreReadWithTheOtherKeysOfValidation) {
@@ -28,11 +29,10 @@ TEST(OpenLoopOptions, AreReadWithTheOtherKeysOfValidation) {
 }
 
 TEST(OpenLoopOptions, ThatMakeNoSenseAreRefusedByName) {
-  for (const auto& [keys, message] :
-       {std::pair{"open_loop = -1", "open_loop"},
-        std::pair{"open_loop = 2\nopen_loop_start = 2", "must be longer than"},
-        std::pair{"open_loop = 9\nopen_loop_offsets = [\"Cz\"]", "'Cz' is not a coefficient"},
-        std::pair{"open_loop_start = \"5 m\"", "open_loop_start"}}) {
+  for (const auto& [keys, message] : {std::pair{"open_loop = -1", "open_loop"},
+                                      std::pair{"open_loop = 2\nopen_loop_start = 2", "must be longer than"},
+                                      std::pair{"open_loop = 9\nopen_loop_offsets = [\"Cz\"]", "'Cz' is unknown"},
+                                      std::pair{"open_loop_start = \"5 m\"", "open_loop_start"}}) {
     try {
       (void)open_loop_of(keys);
       FAIL() << keys;

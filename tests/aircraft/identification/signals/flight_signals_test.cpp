@@ -11,6 +11,7 @@
 #include "tests/support/refusal.hpp"
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -198,7 +199,7 @@ TEST(FlightSignals, AreNotAvailableWhereNothingIsRecorded) {
 
 TEST(SignalOptions, AreReadFromTheStudy) {
   const auto read = [](const std::string& text) {
-    return SignalOptions::read(Study::parse("[signals]\n" + text, "study.toml").root().table("signals"));
+    return SignalOptions::keys().read(Study::parse("[signals]\n" + text, "study.toml").root().table("signals"));
   };
   const SignalOptions given =
       read("rate = 50\npass_band = 4\nflow_angles = \"smoothed\"\nnoise = { alpha = \"1 deg\" }");

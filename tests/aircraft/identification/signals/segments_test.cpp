@@ -8,6 +8,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -141,7 +142,7 @@ TEST(Segments, KeepGapsOutOfTheFlight) {
 TEST(SegmentOptions, RefuseASegmentWithoutLength) {
   const Study study = Study::parse("[segments]\nlongitudinal = [10, 10]\n", "study.toml");
   try {
-    static_cast<void>(SegmentOptions::read(study.root().table("segments")));
+    static_cast<void>(SegmentOptions::keys().read(study.root().table("segments")));
     FAIL() << "accepted";
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(), "study.toml:2: segments.longitudinal: segment 10 s to 10 s has no length");

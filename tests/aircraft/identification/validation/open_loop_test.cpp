@@ -28,6 +28,14 @@ using namespace veridyn::aircraft::testing;
 const std::vector<Coefficient> kAll{Coefficient::kCL, Coefficient::kCD, Coefficient::kCY,
                                     Coefficient::kCl, Coefficient::kCm, Coefficient::kCn};
 
+OpenLoopOptions calm(double duration_s, const std::vector<Coefficient>& offsets = OpenLoopOptions().offsets) {
+  OpenLoopOptions options;
+  options.duration_s = duration_s;
+  options.offsets = offsets;
+  options.gusts = false;
+  return options;
+}
+
 OpenLoop fly(const PreparedFlight& flight, const Subject& subject, const OpenLoopOptions& options,
              const estimation::Estimate& estimate = {}, RowUse use = RowUse::kHoldout) {
   Progress quiet;
@@ -94,7 +102,7 @@ TEST(OpenLoop, FliesAndScoresAsTheExportedJsbsimFileDoes) {
   for (const Coefficient c : kAll)
     for (double& value : model.model.at(c).values) value *= 1.03;
   const PreparedFlight flight = flown(truth, {.duration_s = 10.0});
-  const OpenLoop open = fly(flight, model, {.duration_s = 10.0, .start_s = 2.0, .offsets = {}, .gusts = false});
+  const OpenLoop open = fly(flight, model, calm(10.0, {}));
   ASSERT_EQ(open.windows.size(), 2u) << "one of each axis, the same 10 s";
   ASSERT_EQ(open.states.size(), 8u);
   const std::string xml = write_jsbsim(model);
@@ -130,7 +138,7 @@ TEST(OpenLoop, FliesAndScoresAsTheExportedJsbsimFileDoes) {
 TEST(OpenLoop, OfTheTrueModelHasTheMeasurementsInItsBands) {
   const Subject truth = flown_subject();
   const PreparedFlight flight = flown(truth);
-  const OpenLoop open = fly(flight, truth, {.duration_s = 10.0, .gusts = false});
+  const OpenLoop open = fly(flight, truth, calm(10.0));
   EXPECT_EQ(open.windows.size(), 8u);
   EXPECT_NEAR(pooled_inside(open), 0.95, 0.02);
   for (const estimation::OpenLoopState& state : open.states) {
@@ -168,7 +176,7 @@ TEST(OpenLoop, BandsHoldTheErrorsOfTheParametersAndWhatTheInitialStateMakesUpFor
     for (const Coefficient c : kAll)
       for (double& value : model.model.at(c).values) value += 0.06 * values[place++] * random.normal();
     const PreparedFlight flight = flown(truth, {.duration_s = 20.0, .seed = static_cast<std::uint64_t>(draw) + 10});
-    const OpenLoopOptions options{.duration_s = 10.0, .gusts = false};
+    const OpenLoopOptions options = calm(10.0);
     inside += pooled_inside(fly(flight, model, options, estimate)) / kDraws;
     if (draw < kCompared) without += pooled_inside(fly(flight, model, options)) / kCompared;
   }
@@ -180,7 +188,7 @@ TEST(OpenLoop, BandsHoldTheErrorsOfTheParametersAndWhatTheInitialStateMakesUpFor
 TEST(OpenLoop, OfAWrongCoefficientLeavesItsBandsSoonAndTheRowFails) {
   const Subject truth = flown_subject();
   const PreparedFlight flight = flown(truth);
-  const OpenLoopOptions options{.duration_s = 10.0, .gusts = false};
+  const OpenLoopOptions options = calm(10.0);
   for (const auto& [name, term, state] :
        {std::tuple{Coefficient::kCm, "de", "q"}, std::tuple{Coefficient::kCl, "da", "p"},
         std::tuple{Coefficient::kCn, "beta", "r"}}) {
@@ -207,8 +215,8 @@ TEST(OpenLoop, FindsTheConstantThatAnotherTrimIs) {
   Subject elsewhere = truth;
   elsewhere.model.at(Coefficient::kCl).values[0] -= 0.002;
   elsewhere.model.at(Coefficient::kCm).values[0] -= 0.01;
-  const OpenLoop found = fly(flight, elsewhere, {.duration_s = 10.0, .gusts = false});
-  const OpenLoop drifts = fly(flight, elsewhere, {.duration_s = 10.0, .offsets = {}, .gusts = false});
+  const OpenLoop found = fly(flight, elsewhere, calm(10.0));
+  const OpenLoop drifts = fly(flight, elsewhere, calm(10.0, {}));
   ASSERT_THAT(found.offsets, ElementsAre("Cl", "Cm", "Cn"));
   for (const estimation::OpenLoopWindow& window : found.windows) {
     ASSERT_EQ(window.start.size(), 8u + 3u);
@@ -232,7 +240,7 @@ TEST(OpenLoop, LooksAtNothingThatIdentificationOfItsAxisHasUsed) {
   longitudinal.identification = {{5.0, 9.5}, {16.5, 23.5}};
   lateral.excited = lateral.identification = {{5.0, 35.0}};
   lateral.holdout.clear();
-  const OpenLoop open = fly(flight, truth, {.duration_s = 60.0, .gusts = false});
+  const OpenLoop open = fly(flight, truth, calm(60.0));
   // Longer than the held-out span: into the half second that neither use has.
   ASSERT_EQ(open.windows.size(), 1u);
   EXPECT_NEAR(open.windows[0].span.begin, 10.0, 0.02);
@@ -240,7 +248,7 @@ TEST(OpenLoop, LooksAtNothingThatIdentificationOfItsAxisHasUsed) {
   EXPECT_NEAR(open.windows[0].forecast_from, 12.0, 0.02);
   for (const estimation::OpenLoopState& state : open.states) EXPECT_EQ(state.group, "longitudinal") << state.name;
   // An estimate from elsewhere has seen nothing of the flight.
-  const OpenLoop all = fly(flight, truth, {.duration_s = 60.0, .gusts = false}, {}, RowUse::kExcited);
+  const OpenLoop all = fly(flight, truth, calm(60.0), {}, RowUse::kExcited);
   ASSERT_EQ(all.windows.size(), 2u);
   EXPECT_NEAR(all.windows[0].span.begin, 5.0, 0.03);
   EXPECT_NEAR(all.windows[0].span.end, 40.0, 0.05);
@@ -253,8 +261,7 @@ TEST(OpenLoop, OfSeveralFlightsScoresThemTogetherAndEachByItself) {
   flights.push_back(flown(truth, {.duration_s = 10.0, .rate_Hz = 25.0, .noise = 5.0, .seed = 2, .name = "noisy.csv"}));
   flights[1].shift_s = 100.0;
   Progress quiet;
-  const OpenLoop open =
-      fly_open_loop(flights, RowUse::kHoldout, truth, kAll, {}, {.duration_s = 10.0, .gusts = false}, quiet);
+  const OpenLoop open = fly_open_loop(flights, RowUse::kHoldout, truth, kAll, {}, calm(10.0), quiet);
   ASSERT_EQ(open.by_recording.size(), 2u);
   EXPECT_EQ(open.by_recording[1].recording, "noisy.csv");
   const auto& noisy = open.by_recording[1].states;
@@ -276,8 +283,7 @@ TEST(OpenLoop, OfAModelThatDivergesIsCutThereAndTheRowFails) {
   const Subject truth = flown_subject();
   Subject unstable = truth;
   unstable.model.at(Coefficient::kCm).values[1] = 1.5;
-  const OpenLoop open =
-      fly(flown(truth, {.duration_s = 10.0, .rate_Hz = 25.0}), unstable, {.duration_s = 10.0, .gusts = false});
+  const OpenLoop open = fly(flown(truth, {.duration_s = 10.0, .rate_Hz = 25.0}), unstable, calm(10.0));
   ASSERT_FALSE(open.windows.empty());
   EXPECT_TRUE(open.windows[0].diverged);
   const auto rows = open_loop_evidence(open);
@@ -290,7 +296,7 @@ TEST(OpenLoop, TakesAsMeasuredWhatNoCoefficientMoves) {
   const PreparedFlight flight = flown(truth, {.duration_s = 10.0, .rate_Hz = 25.0});
   Progress quiet;
   const auto with = [&](const std::vector<Coefficient>& known) {
-    return fly_open_loop(std::span(&flight, 1), RowUse::kHoldout, truth, known, {}, {.duration_s = 10.0}, quiet);
+    return fly_open_loop(std::span(&flight, 1), RowUse::kHoldout, truth, known, {}, {{.duration_s = 10.0}}, quiet);
   };
   const OpenLoop open = with({Coefficient::kCL, Coefficient::kCm});
   ASSERT_EQ(open.states.size(), 3u);
@@ -306,7 +312,7 @@ TEST(OpenLoop, TakesAsMeasuredWhatNoCoefficientMoves) {
 TEST(OpenLoop, IsTheSameOnAnyNumberOfThreads) {
   const Subject truth = flown_subject();
   const PreparedFlight flight = flown(truth, {.duration_s = 20.0, .rate_Hz = 25.0});
-  const OpenLoopOptions options{.duration_s = 5.0, .gusts = false};
+  const OpenLoopOptions options = calm(5.0);
   const auto on = [&](int threads) {
     TerminalProgress progress(true, threads);
     return fly_open_loop(std::span(&flight, 1), RowUse::kHoldout, truth, kAll, {}, options, progress);

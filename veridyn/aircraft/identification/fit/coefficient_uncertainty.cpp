@@ -8,6 +8,7 @@
 
 #include "veridyn/aircraft/identification/fit/body_error.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/numerics/gaussian_copula.hpp"
 
 namespace veridyn::aircraft {
@@ -67,27 +68,25 @@ std::vector<FlightMoment> airborne_samples(std::span<const PreparedFlight> fligh
 
 }  // namespace
 
-UncertaintyOptions UncertaintyOptions::read(const StudyTable& table) {
-  UncertaintyOptions options;
-  options.enabled = table.flag_or("enabled", options.enabled);
-  const long long draws = table.integer_or("draws", static_cast<long long>(options.draws));
-  if (!(draws >= 100 && draws <= 100'000'000))
-    table.fail("draws", fmt::format("= {} must be from 100 to 100000000", draws));
-  options.draws = static_cast<std::size_t>(draws);
-  const StudyTable sigma = table.table_or_empty("sigma");
+const KeyTable<UncertaintyOptions>& UncertaintyOptions::keys() {
+  using O = UncertaintyOptions;
   static constexpr EnumArray<FlightSignal, std::string_view, kFlightSignals> kUnits{
       {"rad", "rad", "m/s", "m/s^2", "m/s^2", "m/s^2", "rad/s", "rad/s", "rad/s", "rad/s^2", "rad/s^2", "rad/s^2",
        "rad", "rad", "rad", "N"}};
-  const auto read = [&](std::string_view key, std::string_view unit) {
-    const double value = sigma.number(key, unit);
-    if (!(value >= 0.0)) sigma.fail(key, fmt::format("= {:g} must be >= 0", value));
-    return value;
-  };
-  for (std::size_t i = 0; i < kFlightSignals; ++i) {
-    if (sigma.has(kFlightSignalNames[i])) options.sigma[i] = read(kFlightSignalNames[i], kUnits[i]);
-  }
-  if (sigma.has("air_density")) options.sigma_air_density = read("air_density", "kg/m^3");
-  return options;
+  static const auto table = [] {
+    KeyTable<O> errors("sigma",
+                       "Standard deviations of the errors of flight signals, in place of what the sensors leave.");
+    for (const FlightSignal signal : enumerators<FlightSignal, kFlightSignals>())
+      errors.number(
+          std::string(kFlightSignalNames[signal]), [signal](O & o) -> auto& { return o.sigma[signal]; },
+          std::string(kUnits[signal]), kNotNegative, "");
+    errors.number("air_density", &O::sigma_air_density, "kg/m^3", kNotNegative, "");
+    return KeyTable<O>("uncertainty", "The Monte Carlo run of what measured coefficients are worth (section 8).")
+        .flag("enabled", &O::enabled, "whether it is run")
+        .count("draws", &O::draws, 100, 100'000'000, "how often every input is drawn")
+        .table("sigma", std::identity(), errors);
+  }();
+  return table;
 }
 
 estimation::UncertainInputs coefficient_inputs(std::span<const PreparedFlight> flights, const Subject& subject,

@@ -14,20 +14,13 @@
 namespace veridyn::aircraft {
 
 /// Monte Carlo uncertainty of the measured coefficients. Study table `[uncertainty]`.
-///
-///     enabled = true
-///     draws = 100000           # at least 100
-///     [uncertainty.sigma]      # standard deviation of a flight signal's error, instead of what the sensors leave:
-///     thrust = 0.5             # alpha, beta, airspeed, accel_x .. accel_z, p, q, r, p_dot, q_dot, r_dot, thrust [SI],
-///     air_density = 0.01       # and the air density [kg/m^3]
 struct UncertaintyOptions {
   bool enabled = true;
   std::size_t draws = 100000;
-  EnumArray<FlightSignal, std::optional<double>, kFlightSignals> sigma;
+  EnumArray<FlightSignal, std::optional<double>, kFlightSignals> sigma;  ///< nothing: by the sensors
   double sigma_air_density = 0.0;
 
-  /// @throws InputError for values that make no sense.
-  [[nodiscard]] static UncertaintyOptions read(const StudyTable& table);
+  [[nodiscard]] static const KeyTable<UncertaintyOptions>& keys();
 };
 
 /// Inputs of the six coefficients: the flight signals, the air density, the aircraft's constants.

@@ -15,6 +15,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/numerics/rotation.hpp"
 #include "veridyn/numerics/statistics.hpp"
 #include "veridyn/numerics/threads/parallel.hpp"
@@ -373,17 +374,23 @@ void velocity_through_mean_air(const Recording& smoothed, FlightSignals& flight)
 
 }  // namespace
 
-SignalOptions SignalOptions::read(const StudyTable& table) {
-  SignalOptions options;
-  options.rate_Hz = table.has("rate") ? table.positive("rate", "Hz") : 0.0;
-  options.pass_Hz = table.has("pass_band") ? table.positive("pass_band", "Hz") : 0.0;
-  const std::vector<std::string> choices{"auto", "vane", "smoothed"};
-  const std::string angles = table.choice_or("flow_angles", choices, "auto");
-  options.flow_angles = angles == "vane"       ? FlowAngles::kVane
-                        : angles == "smoothed" ? FlowAngles::kSmoothed
-                                               : FlowAngles::kAuto;
-  options.noise = recording::read_noise(table.table_or_empty("noise"), standard_channels());
-  return options;
+const KeyTable<SignalOptions>& SignalOptions::keys() {
+  using O = SignalOptions;
+  static const auto table =
+      KeyTable<O>("signals", "How recorded channels become signals on one grid (section 6).")
+          .number("rate", &O::rate_Hz, "Hz", kPositive, "of the common grid; at least 10")
+          .otherwise("the gyro's, at most 100; of several flights that of the slowest")
+          .number("pass_band", &O::pass_Hz, "Hz", kPositive, "frequencies up to here are kept unchanged")
+          .otherwise("10, or a fifth of the rate where that is less")
+          .choice("flow_angles", &O::flow_angles,
+                  {{"auto", FlowAngles::kAuto}, {"vane", FlowAngles::kVane}, {"smoothed", FlowAngles::kSmoothed}},
+                  "what coefficients are regressed on: the filtered vane or the smoother's angle; `auto`: a vane where "
+                  "there is one")
+          .other(recording::noise_key("measured above the pass band"),
+                 [](const StudyTable& t, const std::string& key, O& o) {
+                   o.noise = recording::read_noise(t.table(key), standard_channels());
+                 });
+  return table;
 }
 
 FlightSample<double> FlightSignals::sample(std::size_t k) const {

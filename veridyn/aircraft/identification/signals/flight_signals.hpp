@@ -23,15 +23,12 @@ enum class FlowAngles {
 
 /// How recorded channels become signals for regression. Study table `[signals]`.
 struct SignalOptions {
-  double rate_Hz = 0.0;  ///< `rate`: of the common grid; 0 takes the gyro's rate, at most 100 Hz
-  double pass_Hz = 0.0;  ///< `pass_band`: kept unchanged; 0 takes 10 Hz or a fifth of the rate, whichever is less
-  FlowAngles flow_angles = FlowAngles::kAuto;  ///< `flow_angles`: "auto", "vane", "smoothed"
-  /// `[signals.noise]`: standard deviation of a channel's white noise per sample, by standard channel name; channels
-  /// that are not given are measured from their content above the pass band.
-  recording::GivenNoise noise;
+  double rate_Hz = 0.0;  ///< of the common grid; 0: by the gyro
+  double pass_Hz = 0.0;  ///< kept unchanged; 0: by the rate
+  FlowAngles flow_angles = FlowAngles::kAuto;
+  recording::GivenNoise noise;  ///< what is not given is measured
 
-  /// @throws InputError for values that make no sense.
-  [[nodiscard]] static SignalOptions read(const StudyTable& table);
+  [[nodiscard]] static const KeyTable<SignalOptions>& keys();
 };
 
 using recording::ErrorKind;

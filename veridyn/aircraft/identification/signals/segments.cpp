@@ -28,16 +28,28 @@ std::vector<double> larger(std::vector<double> a, const std::vector<double>& b) 
 
 const char* to_string(Axis axis) { return axis == Axis::kLongitudinal ? "longitudinal" : "lateral"; }
 
-SegmentOptions SegmentOptions::read(const StudyTable& table) {
-  SegmentOptions options;
-  recording::SegmentOptions::keys().read(table, options);
-  options.min_airspeed_mps = table.number_or("min_airspeed", "m/s", options.min_airspeed_mps);
-  if (table.has("min_input")) options.min_input_rad = table.positive("min_input", "rad");
-  options.ambient_factor = table.number_or("ambient_factor", "1", options.ambient_factor);
-  if (table.has("min_rate")) options.min_rate_radps = table.positive("min_rate", "rad/s");
-  options.longitudinal = recording::read_spans(table, "longitudinal");
-  options.lateral = recording::read_spans(table, "lateral");
-  return options;
+const KeyTable<SegmentOptions>& SegmentOptions::keys() {
+  using O = SegmentOptions;
+  const auto spans = [](std::vector<TimeSpan> O::*member) {
+    return [member](const StudyTable& t, const std::string& key, O& o) { o.*member = recording::read_spans(t, key); };
+  };
+  static const auto table =
+      KeyTable<O>("segments", "Which stretches of a flight are used, and what for (section 7).")
+          .number("min_airspeed", &O::min_airspeed_mps, "m/s", kAnyNumber, "below it the aircraft does not fly")
+          .otherwise("0.8 of the speed where CL = 1.2 carries the weight")
+          .number("min_input", &O::min_input_rad, "rad", kPositive,
+                  "activity of the surfaces (rms about the mean over `window`) that counts as excitation, at least")
+          .otherwise("0.01 rad, or in a gentle flight less, down to 0.05 deg")
+          .number("ambient_factor", &O::ambient_factor, "1", kAnyNumber,
+                  "and at least this many times that of the calmest fifth of the flight")
+          .number("min_rate", &O::min_rate_radps, "rad/s", kPositive, "activity of the body rates that must answer")
+          .otherwise("2 deg/s, or in a gentle flight less, down to 0.1 deg/s")
+          .with(recording::SegmentOptions::keys())
+          .other(recording::spans_key("longitudinal", "stretches that are used for lift, drag and pitching moment"),
+                 spans(&O::longitudinal))
+          .other(recording::spans_key("lateral", "stretches that are used for side force, roll and yaw"),
+                 spans(&O::lateral));
+  return table;
 }
 
 namespace {

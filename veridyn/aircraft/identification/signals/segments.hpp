@@ -15,22 +15,17 @@ namespace veridyn::aircraft {
 enum class Axis { kLongitudinal, kLateral };
 [[nodiscard]] const char* to_string(Axis axis);
 
-/// How stretches of flight with excitation are found: keys of recording::SegmentOptions (`window`: activity is an RMS
-/// about the mean over this long) and these. Study table `[segments]`; every key is optional.
+/// How stretches of flight with excitation are found. Study table `[segments]`.
 struct SegmentOptions : recording::SegmentOptions {
-  double min_airspeed_mps =
-      0.0;  ///< `min_airspeed`: below it the aircraft is not flying; set by the caller from the subject
-  /// `min_input`: surface activity that counts as excitation, at least. Nothing: 0.01 rad, or where a flight is gentler
-  /// half of what its most active twentieth exceeds, down to 0.05 deg.
+  double min_airspeed_mps = 0.0;  ///< 0: set by the caller from the subject
+  /// Nothing: 0.01 rad, or where a flight is gentler half of what its most active twentieth exceeds, down to 0.05 deg.
   std::optional<double> min_input_rad = {};
-  double ambient_factor = 2.0;  ///< `ambient_factor`: ... and at least this many times the calmest fifth of the flight
-  /// `min_rate`: body rate activity that must answer. Nothing: 2 deg/s, or less likewise, down to 0.1 deg/s.
-  std::optional<double> min_rate_radps = {};
-  std::vector<TimeSpan> longitudinal;  ///< `longitudinal = [10, 60, 80, 95]`: begin and end of each, given by the user
-  std::vector<TimeSpan> lateral;       ///< `lateral`
+  double ambient_factor = 2.0;
+  std::optional<double> min_rate_radps = {};  ///< nothing: 2 deg/s, or less likewise, down to 0.1 deg/s
+  std::vector<TimeSpan> longitudinal;         ///< as given
+  std::vector<TimeSpan> lateral;
 
-  /// @throws InputError for values that make no sense.
-  [[nodiscard]] static SegmentOptions read(const StudyTable& table);
+  [[nodiscard]] static const KeyTable<SegmentOptions>& keys();
 };
 
 /// What the search looks at: one uniform grid, NaN where a signal is missing.

@@ -8,6 +8,7 @@
 
 #include "veridyn/aircraft/model/wind_axes.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -144,11 +145,14 @@ void append(std::vector<PredictedQuantity>& all, const PredictedQuantity& more, 
 
 }  // namespace
 
-ValidationOptions ValidationOptions::read(const StudyTable& table) {
-  ValidationOptions options;
-  options.period_s = table.positive_or("period", "s", options.period_s);
-  options.open_loop = OpenLoopOptions::read(table);
-  return options;
+const KeyTable<ValidationOptions>& ValidationOptions::keys() {
+  using O = ValidationOptions;
+  static const auto table =
+      KeyTable<O>("validate", "How the model's predictions are compared with what was flown (section 10).")
+          .number("period", &O::period_s, "s", kPositive,
+                  "the simulation starts again from the measured state this often")
+          .with(&O::open_loop, OpenLoopOptions::keys());
+  return table;
 }
 
 Validation validate_flight(const FlightSignals& signals, std::span<const TimeSpan> longitudinal,

@@ -14,11 +14,10 @@ namespace veridyn::aircraft {
 
 /// Study table `[validate]`.
 struct ValidationOptions {
-  double period_s = 5.0;           ///< `period`: the simulation starts again from the measured state this often
-  OpenLoopOptions open_loop = {};  ///< keys `open_loop`...: what is flown from deflections and thrust alone
+  double period_s = 5.0;
+  OpenLoopOptions open_loop = {};  ///< what is flown from deflections and thrust alone
 
-  /// @throws InputError for values that make no sense.
-  [[nodiscard]] static ValidationOptions read(const StudyTable& table);
+  [[nodiscard]] static const KeyTable<ValidationOptions>& keys();
 };
 
 /// A quantity predicted by the model against what was measured.

@@ -205,8 +205,7 @@ const KeyTable<DriveSignalOptions>& DriveSignalOptions::keys() {
                   "the body then shows (1 + g roll_gradient) times the lateral acceleration, and that is taken off. "
                   "Ignored where `roll` is recorded, of which g sin(roll) is taken off")
           .number("gravity", &O::gravity, "m/s^2", kPositive, "")
-          .other({"noise", "SI", "by the standard names of channels", "measured above 0.2 of the channel's rate",
-                  "standard deviation of a channel's white noise per sample", true},
+          .other(recording::noise_key("measured above 0.2 of the channel's rate"),
                  [](const StudyTable& t, const std::string& key, O& o) {
                    std::vector<recording::StandardChannel> channels;
                    for (std::size_t i = 0; i < kDriveSignals; ++i)

@@ -1,0 +1,21 @@
+#include "veridyn/aircraft/aircraft_keys.hpp"
+
+#include "veridyn/aircraft/aircraft_study.hpp"
+#include "veridyn/aircraft/flight_sensitivity.hpp"
+#include "veridyn/aircraft/sensors/air_data_calibration.hpp"
+#include "veridyn/aircraft/sensors/swing_test.hpp"
+
+namespace veridyn::aircraft {
+
+std::vector<StudyKeys> study_keys() {
+  return all_of(subject_keys(), FlightDataKeys::keys(), DelayAlignment::keys(), ReconstructOptions::keys(),
+                SignalOptions::keys(), SegmentOptions::keys(), IdentifyOptions::keys(), ValidationOptions::keys(),
+                TrackOptions::keys(), UncertaintyOptions::keys(), SimulationOptions::keys(), sensor_keys(),
+                FlightSensitivityOptions::keys());
+}
+
+std::vector<StudyKeys> swing_test_keys() { return all_of(SwingTest::keys()); }
+
+std::vector<StudyKeys> calibration_keys() { return all_of(CalibrationStudy::keys()); }
+
+}  // namespace veridyn::aircraft
