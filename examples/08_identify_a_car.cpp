@@ -40,7 +40,7 @@ int main() {
   start.C_f = start.C_r = 80000.0;
   start.I_z = 2000.0;
   VehicleIdentifyOptions options;
-  options.mass_sigma = 15.0;
+  options.given.mass = 15.0;
   const VehicleIdentification result = identify_parameters({signals, segments, start, signal_options, options}, silent);
 
   const std::map<std::string, double> known = {{"C_f", truth.C_f}, {"C_r", truth.C_r}, {"I_z", truth.I_z}};

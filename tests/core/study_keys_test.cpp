@@ -107,9 +107,9 @@ TEST(StudyKeys, FillWhatTheStudyGivesAndLeaveTheRest) {
 }
 
 TEST(StudyKeys, RefuseWhatIsOutOfRangeByItsPlace) {
-  EXPECT_THAT(refusal("rate = 300\n"), HasSubstr("study.toml:2: thing.rate: = 300 must be from 10 to 200 Hz"));
+  EXPECT_THAT(refusal("rate = 300\n"), HasSubstr("study.toml:2: thing.rate: = 300 Hz must be from 10 to 200 Hz"));
   EXPECT_THAT(refusal("throw = 0\n"), HasSubstr("thing.throw: = 0 must be > 0"));
-  EXPECT_THAT(refusal("stop = 1\n"), HasSubstr("must be between 0 and 1"));
+  EXPECT_THAT(refusal("stop = 1\n"), HasSubstr("thing.stop: = 1 rad must be between 0 and 1 rad"));
   EXPECT_THAT(refusal("draws = 5\n"), HasSubstr("thing.draws: = 5 must be from 10 to 1000"));
   EXPECT_THAT(refusal("filter = \"Bessel\"\n"), HasSubstr("'Bessel' is not one of none, Butterworth"));
   EXPECT_THAT(refusal("filters = [\"none\", \"Bessel\"]\n"),
@@ -238,7 +238,7 @@ TEST(StudyKeys, DescribeThemselvesWithDefaultsThatTheStudyWouldTake) {
   EXPECT_EQ(again.rate_Hz, 50.0);
   EXPECT_NEAR(again.stop_rad, 25.0 * kDegree, 1e-15);
   EXPECT_EQ(again.draws, 100U);
-  EXPECT_THAT(in_markdown(all[0]), HasSubstr("| `rate` | Hz | `\"50 Hz\"` | from 10 to 200 | of the grid |\n"
+  EXPECT_THAT(in_markdown(all[0]), HasSubstr("| `rate` | Hz | `\"50 Hz\"` | from 10 to 200 Hz | of the grid |\n"
                                              "| `throw` | rad | not known | > 0 | of the surface |\n"));
   EXPECT_THAT(commented_line(all[0].keys[0]), HasSubstr("# rate = \"50 Hz\""));
 }

@@ -118,8 +118,9 @@ PreparedFlight prepared(const FlightStudy& study, Progress& progress) {
   if (flight.reconstruction.interrupted) return flight;
   if (flight.usable()) {
     const bool data_sheet = options.sensors == NoiseSource::kReference;
-    flight.signals = prepare_signals(flight.aligned, flight.reconstruction.smoothed, study.subject, study.signals,
-                                     data_sheet ? &flight.reconstruction.sigma : nullptr, progress.threads());
+    flight.signals = prepare_signals(
+        flight.aligned, flight.reconstruction.smoothed, flow_sensors(options, flight.reconstruction.smoothed),
+        study.subject, study.signals, data_sheet ? &flight.reconstruction.sigma : nullptr, progress.threads());
     flight.segments = excited_segments(flight.signals, study.segments);
     leave_out_slow_flight(flight.signals, flight.segments, study.segments.min_airspeed_mps);
     if (study.held_out) flight.segments = all_held_out(std::move(flight.segments));

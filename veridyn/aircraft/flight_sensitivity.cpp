@@ -180,7 +180,7 @@ const KeyTable<FlightSensitivityOptions>& FlightSensitivityOptions::keys() {
       KeyTable<O>("sensitivity",
                   "What varies: by default each number of the aircraft that is not 0, parameters of the model by name "
                   "(`CL_alpha`), `mass`, `Jx`, `Jy`, `Jz`, `Jxz`; and how indices are computed.")
-          .number("longest", &O::longest, "s", kPositive, "of each manoeuvre so much at most is flown again")
+          .number("longest", &O::longest, "s", kPositive, "longest part of each manoeuvre that is flown again")
           .with(IndexOptions::keys())
           .with(&O::given, estimation::GivenInputs::keys())
           .check([](const StudyTable& t, O& o) {

@@ -124,7 +124,7 @@ std::vector<FlightStudy> alike(std::vector<FlightStudy> flights) {
 
 const KeyTable<FlightDataKeys>& FlightDataKeys::keys() {
   static const auto table =
-      KeyTable<FlightDataKeys>("data", "The log of a flight, or of several flights of one aircraft (section 3).")
+      KeyTable<FlightDataKeys>("data", "The log of a flight, or of several flights of one aircraft.")
           .with(recording::DataKeys::keys())
           .with(calibration_file_keys());
   return table;

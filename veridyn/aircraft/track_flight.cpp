@@ -124,8 +124,9 @@ std::vector<FlightChange> TrackedFlight::advance(const MappedRecording& mapped, 
     air = std::move(reconstruction->filtered);
   }
   const SensorSigma known = internal::load_streams(part.recording, study.reconstruct).sigma;
-  const FlightSignals signals = prepare_signals(
-      part, air, study.subject, study.signals, study.reconstruct.sensors == NoiseSource::kReference ? &known : nullptr);
+  const FlightSignals signals =
+      prepare_signals(part, air, flow_sensors(study.reconstruct, air), study.subject, study.signals,
+                      study.reconstruct.sensors == NoiseSource::kReference ? &known : nullptr);
   if (tracker_.rows() == 0 && notes_.empty()) notes_ = signals.notes;
   if (whole && finished && reconstruction) judge_recording(part, study, *reconstruction, signals, delays);
   const double margin = filter_margin(signals);
@@ -152,8 +153,11 @@ void TrackedFlight::check_recording(const MappedRecording& mapped, const FlightS
   const Reconstruction reconstruction = filter ? reconstruct(mapped.recording, study.reconstruct, progress)
                                                : recorded_motion(mapped.recording, study.reconstruct, study.signals);
   if (reconstruction.interrupted) return;
-  judge_recording(mapped, study, reconstruction,
-                  prepare_signals(mapped, reconstruction.smoothed, study.subject, study.signals), delays);
+  judge_recording(
+      mapped, study, reconstruction,
+      prepare_signals(mapped, reconstruction.smoothed, flow_sensors(study.reconstruct, reconstruction.smoothed),
+                      study.subject, study.signals),
+      delays);
 }
 
 estimation::Estimate TrackedFlight::estimate() const { return judged_estimate(tracker_, recording_evidence_); }

@@ -4,7 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -14,15 +16,53 @@
 
 namespace veridyn {
 
-std::string KeyRange::text() const {
+namespace {
+
+/// A long number in plain figures: 3600000, not 3.6e+06; 0 with a unit is 0.
+std::string plain(double x) {
+  return x == std::round(x) && std::abs(x) < 1e16 ? fmt::format("{:.0f}", x) : fmt::format("{:.6g}", x);
+}
+
+/// An angle, or a rate of one, in degrees where that is the rounder number.
+bool rounder_in_degrees(double si, const Unit& degrees) {
+  const double number = degrees.from_si(si);
+  const auto round = [](double x) { return std::abs(x * 100.0 - std::round(x * 100.0)) < 1e-6; };
+  return si != 0.0 && !round(si) && round(number);
+}
+
+/// "60 deg", "3 m/s"; a number without dimension alone.
+std::string with_unit(double si, std::string_view unit) {
+  if (unit.empty() || unit == "1") return plain(si);
+  for (const auto& [radians, degrees] : {std::pair{"rad", "deg"}, std::pair{"rad/s", "deg/s"}})
+    if (unit == radians && rounder_in_degrees(si, parse_unit(degrees)))
+      return fmt::format("{} {}", plain(parse_unit(degrees).from_si(si)), degrees);
+  return fmt::format("{} {}", plain(si), unit);
+}
+
+}  // namespace
+
+std::string KeyRange::text(std::string_view unit) const {
   const bool bounded_low = std::isfinite(low), bounded_high = std::isfinite(high);
+  double scale = 1.0;
+  std::string name(unit == "1" ? "" : unit);
+  for (const auto& [radians, degrees] : {std::pair{"rad", "deg"}, std::pair{"rad/s", "deg/s"}}) {
+    const Unit other = parse_unit(degrees);
+    if (unit != radians ||
+        (!(bounded_low && rounder_in_degrees(low, other)) && !(bounded_high && rounder_in_degrees(high, other))))
+      continue;
+    scale = other.scale;
+    name = degrees;
+  }
+  const bool of_zero = (!bounded_low || low == 0.0) && (!bounded_high || high == 0.0);
+  if (!name.empty()) name = of_zero ? "" : " " + name;
+  const std::string a = plain(low / scale), b = plain(high / scale);
   if (!bounded_low && !bounded_high) return {};
-  if (!bounded_high) return fmt::format("{} {:.9g}", with_low ? ">=" : ">", low);
-  if (!bounded_low) return fmt::format("{} {:.9g}", with_high ? "<=" : "<", high);
-  if (with_low && with_high) return fmt::format("from {:.9g} to {:.9g}", low, high);
-  if (!with_low && !with_high) return fmt::format("between {:.9g} and {:.9g}", low, high);
-  return with_high ? fmt::format("above {:.9g} and at most {:.9g}", low, high)
-                   : fmt::format("at least {:.9g} and below {:.9g}", low, high);
+  if (!bounded_high) return fmt::format("{} {}{}", with_low ? ">=" : ">", a, name);
+  if (!bounded_low) return fmt::format("{} {}{}", with_high ? "<=" : "<", b, name);
+  if (with_low && with_high) return fmt::format("from {} to {}{}", a, b, name);
+  if (!with_low && !with_high) return fmt::format("between {} and {}{}", a, b, name);
+  return with_high ? fmt::format("above {} and at most {}{}", a, b, name)
+                   : fmt::format("at least {} and below {}{}", a, b, name);
 }
 
 std::string heading_of(const StudyKeys& table) {
@@ -95,36 +135,37 @@ void refuse_missing(const StudyTable& table, const std::vector<std::string>& key
   throw InputError(table.place(""), fmt::format("{} are missing", fmt::join(keys, ", ")));
 }
 
+void require_keys(const StudyTable& table, std::initializer_list<const char*> keys) {
+  std::vector<std::string> missing;
+  for (const char* key : keys)
+    if (!table.has(key)) missing.emplace_back(key);
+  refuse_missing(table, missing);
+}
+
+void refuse_keys(const StudyTable& table, std::initializer_list<const char*> keys, std::string_view why) {
+  for (const char* key : keys)
+    if (table.has(key)) table.fail(key, why);
+}
+
 namespace internal {
 namespace {
-
-/// An angle, or a rate of one, in degrees where that is the rounder number.
-bool rounder_in_degrees(double si, const Unit& degrees) {
-  const double number = degrees.from_si(si);
-  const auto round = [](double x) { return std::abs(x * 100.0 - std::round(x * 100.0)) < 1e-6; };
-  return si != 0.0 && !round(si) && round(number);
-}
 
 void check(const StudyTable& table, const std::string& name, const std::string& unit, const KeyRange& range,
            double value) {
   if (range.contains(value)) return;
-  const std::string with_unit = unit.empty() || unit == "1" || range.low == 0.0 ? std::string() : " " + unit;
-  table.fail(name, fmt::format("= {:g} must be {}{}", value, range.text(), with_unit));
+  // By its unit where the rule has one.
+  const std::string rule = range.text(unit);
+  const bool has_unit = !rule.empty() && (std::isalpha(static_cast<unsigned char>(rule.back())) != 0);
+  table.fail(name,
+             fmt::format("= {} must be {}", has_unit ? with_unit(value, unit) : fmt::format("{:g}", value), rule));
 }
 
 }  // namespace
 
 std::string shown(double si, std::string_view unit) {
   if (!std::isfinite(si)) return {};
-  // A long time in plain figures: 3600000 s.
-  const auto plain = [](double x) {
-    return x == std::round(x) && std::abs(x) < 1e9 ? fmt::format("{:.0f}", x) : fmt::format("{:.6g}", x);
-  };
-  if (unit.empty() || unit == "1") return plain(si);
-  for (const auto& [radians, degrees] : {std::pair{"rad", "deg"}, std::pair{"rad/s", "deg/s"}})
-    if (unit == radians && rounder_in_degrees(si, parse_unit(degrees)))
-      return fmt::format("\"{} {}\"", plain(parse_unit(degrees).from_si(si)), degrees);
-  return fmt::format("\"{} {}\"", plain(si), unit);
+  const std::string text = with_unit(si, unit);
+  return unit.empty() || unit == "1" ? text : '"' + text + '"';
 }
 
 std::string shown(const std::vector<double>& si, std::string_view unit) {
@@ -150,7 +191,10 @@ std::vector<double> numbers_in(const StudyTable& table, const std::string& name,
 
 long long integer_in(const StudyTable& table, const std::string& name, long long least, long long most) {
   const long long value = table.integer(name);
-  if (value < least || value > most) table.fail(name, fmt::format("= {} must be from {} to {}", value, least, most));
+  const bool bounded = most < std::numeric_limits<long long>::max();
+  if (value < least || value > most)
+    table.fail(name, fmt::format("= {} must be {}", value,
+                                 bounded ? fmt::format("from {} to {}", least, most) : fmt::format(">= {}", least)));
   return value;
 }
 

@@ -4,6 +4,7 @@
 #include <concepts>
 #include <filesystem>
 #include <functional>
+#include <initializer_list>
 #include <limits>
 #include <optional>
 #include <string>
@@ -26,8 +27,8 @@ struct KeyRange {
   [[nodiscard]] bool contains(double x) const {
     return (with_low ? x >= low : x > low) && (with_high ? x <= high : x < high);
   }
-  /// "> 0", ">= 0", "from 1 to 10", "between 0 and 1", "above 0 and at most 1"; nothing for any number.
-  [[nodiscard]] std::string text() const;
+  /// "> 0", "from 1 to 10", "between 0 and 90 deg", "above 0 and at most 1"; nothing for any number.
+  [[nodiscard]] std::string text(std::string_view unit) const;
 };
 inline constexpr KeyRange kAnyNumber{};
 inline constexpr KeyRange kPositive{.low = 0.0, .with_low = false};
@@ -40,6 +41,9 @@ inline constexpr KeyRange kNotNegative{.low = 0.0};
 }
 /// Above 0, at most `most`.
 [[nodiscard]] constexpr KeyRange share_up_to(double most) { return {.low = 0.0, .high = most, .with_low = false}; }
+
+/// The largest seed: every whole number up to it is a number of its own in TOML and JSON.
+inline constexpr long long kLargestSeed = 9007199254740992;
 
 /// A key of a study as its user sees it.
 struct StudyKey {
@@ -79,6 +83,10 @@ struct StudyKeys {
 /// Keys that a table must have and has not.
 /// @throws InputError naming all of them, where there are any
 void refuse_missing(const StudyTable& table, const std::vector<std::string>& keys);
+/// Those of `keys` that a table has not, as above.
+void require_keys(const StudyTable& table, std::initializer_list<const char*> keys);
+/// Keys that have no place beside others. @throws InputError for the first that is there, saying `why`
+void refuse_keys(const StudyTable& table, std::initializer_list<const char*> keys, std::string_view why);
 
 namespace internal {
 
@@ -123,7 +131,7 @@ class KeyTable {
   template <typename Field>
   KeyTable& number(std::string name, Field field, std::string unit, KeyRange range, std::string says) {
     return add(
-        {std::move(name), unit, range.text(), {}, std::move(says)},
+        {std::move(name), unit, range.text(unit), {}, std::move(says)},
         [field, unit](T& object) {
           const std::optional<double> value = std::invoke(field, object);
           return value ? internal::shown(*value, unit) : std::string();
@@ -140,7 +148,7 @@ class KeyTable {
     KeyRange range = from_to(static_cast<double>(least), static_cast<double>(most));
     if (most == std::numeric_limits<long long>::max()) range.high = std::numeric_limits<double>::infinity();
     return add(
-        {std::move(name), {}, range.text(), {}, std::move(says)},
+        {std::move(name), {}, range.text({}), {}, std::move(says)},
         [field](T& object) {
           const auto value = std::optional(std::invoke(field, object));
           return value ? std::to_string(*value) : std::string();
@@ -158,7 +166,7 @@ class KeyTable {
   template <typename Field>
   KeyTable& numbers(std::string name, Field field, std::string unit, KeyRange range, std::string says) {
     return add(
-        {std::move(name), unit, range.text(), {}, std::move(says)},
+        {std::move(name), unit, range.text(unit), {}, std::move(says)},
         [field, unit](T& object) {
           auto& v = std::invoke(field, object);
           return internal::shown(std::vector<double>(v.data(), v.data() + v.size()), unit);

@@ -17,7 +17,7 @@ const KeyTable<MaskTable>& MaskTable::keys() {
           .choice("cue", &M::cue, cues, "whose response")
           .numbers("frequency", &M::frequency, "rad/s", kAnyNumber, "growing, two at least")
           .required()
-          .numbers("least_gain", &M::least_gain, "1", kAnyNumber, "one a frequency, as the next three")
+          .numbers("least_gain", &M::least_gain, "1", kAnyNumber, "one value per frequency, as in the next three")
           .otherwise("none")
           .numbers("most_gain", &M::most_gain, "1", kAnyNumber, "greatest gain")
           .otherwise("none")
@@ -77,7 +77,7 @@ const KeyTable<CueTable>& CueTable::keys() {
   const auto gravity = [](C& c) -> recording::GravityIn& { return c.motion.gravity; };
   static const auto table =
       KeyTable<C>("cue", "What algorithms make of the drive, and how it is judged.")
-          .texts("algorithms", &C::algorithms, "those compared; the others with the first")
+          .texts("algorithms", &C::algorithms, "algorithms to compare; the first is the reference")
           .with(&C::settings, DriverSettings::keys())
           .numbers("driver", &C::driver, "m", kAnyNumber, "driver's head from the centre of gravity: forward, left, up")
           .numbers("sensor", place, "m", kAnyNumber, "the same of the recorded accelerometer")
@@ -85,7 +85,7 @@ const KeyTable<CueTable>& CueTable::keys() {
                   {{"decide", recording::GravityIn::kDecide},
                    {"in", recording::GravityIn::kYes},
                    {"out", recording::GravityIn::kNo}},
-                  "whether accelerations hold gravity; `decide`: by accel_z")
+                  "whether accelerations contain gravity; `decide`: by accel_z")
           .choice("perception", &C::perception, models, "model of the organs of balance")
           .choice("thresholds", &C::reid_nahon, {{"usual", false}, {"reid_nahon", true}}, "of what is felt")
           .flag("optimum", &C::optimum, "how small the perceived error could be with the drive known before")

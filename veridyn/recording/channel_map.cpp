@@ -85,7 +85,7 @@ const KeyTable<MapEntry>& entry_keys() {
           .text("unit", &M::unit, "of the result")
           .otherwise("that of the log's channel")
           .number("zero", &M::zero, "1", kAnyNumber, "taken off the raw number")
-          .number("scale", &M::scale, "1", kAnyNumber, "by which what is left is multiplied")
+          .number("scale", &M::scale, "1", kAnyNumber, "factor, applied after `zero` is subtracted")
           .number("delay", &M::delay_s, "s", kAnyNumber, "how late the sensor reports; taken off its stamps")
           .check(check_entry);
   return table;
@@ -305,7 +305,7 @@ const KeyTable<ChannelMap>& ChannelMap::keys() {
                            "Which channel of the log is which standard one, `airspeed = \"ARSP.Airspeed\"`; a table "
                            "says how it is made, and `\"none\"` takes a channel away.")
           .other({kUnits, "", "`[\"deg\", \"deg/s\", \"kt\"]`, or `\"SI\"`", "none",
-                  "of channels for which the log has none: the one of the kind that is needed", true},
+                  "units for channels without one in the log: each gets the listed unit of its dimension", true},
                  [](const StudyTable& t, const std::string&, ChannelMap&) {
                    static_cast<void>(declared_unit(t, {"", "1"}));
                  })

@@ -38,9 +38,9 @@ const KeyTable<io::TableOptions>& time_keys() {
   static const auto table =
       KeyTable<O>(
           "time",
-          "For tables that do not say where their stamps are; of some of several tables by their names, `GPS = { "
-          "column = \"T\", unit = \"ms\" }`.")
-          .text("column", &O::time_column, "with the stamps")
+          "For tables that do not say where their stamps are; where only some do not, by table name: `GPS = { column = "
+          "\"T\", unit = \"ms\" }`.")
+          .text("column", &O::time_column, "column that holds the time stamps")
           .otherwise("found by its name")
           .text("unit", &O::time_unit, "of the stamps")
           .otherwise("of the header, else by how far rows are apart")
@@ -300,7 +300,7 @@ const KeyTable<DataKeys>& DataKeys::keys() {
   using K = DataKeys;
   static const auto table = KeyTable<K>("data", "The recording, or several of the same thing.")
                                 .with(RecordingKeys::keys())
-                                .files("runs", &K::runs, "several recordings, for each of which all keys here are")
+                                .files("runs", &K::runs, "several recordings, each read with the keys of this table")
                                 .files("holdout_runs", &K::holdout_runs, "likewise, never used by identification")
                                 .tables("run", run_keys(), [](const StudyTable&, K&) {})
                                 .table("map", &K::map, ChannelMap::keys());

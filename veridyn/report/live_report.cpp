@@ -79,7 +79,7 @@ Section packets_section(const LiveReplay& run) {
   t.columns = {{.name = "packets", .align = Align::kLeft}};
   for (const PacketIntake::FromSender& s : run.senders) t.columns.push_back({.name = to_string(s.sender)});
   t.sortable = false;
-  for (std::size_t i = 0; i < kPacketStatuss; ++i) {
+  for (std::size_t i = 0; i < kPacketStatuses; ++i) {
     if (run.packets[i] == 0 && i > 0) continue;
     Row row{.cells = {text_cell(std::string(name_of(static_cast<PacketStatus>(i))))}};
     for (const PacketIntake::FromSender& s : run.senders)

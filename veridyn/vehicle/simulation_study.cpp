@@ -71,13 +71,13 @@ const KeyTable<DriveKeys>& DriveKeys::keys() {
           .number("speed", &K::speed, "m/s", kPositive, "kept, unless `longitudinal`")
           .otherwise("required, but for a built-in vehicle")
           .other({"manoeuvre", "", quoted_list({manoeuvre_names().begin(), manoeuvre_names().end()}, "`"),
-                  "\"reference\"", "what is steered"},
+                  "\"reference\"", "the manoeuvre that is driven"},
                  [](const StudyTable&, const std::string&, K&) {})
           .number("duration", &K::duration, "s", kPositive, "of the drive")
           .otherwise("that of the manoeuvre")
           .number("step", simulation(&S::step), "s", kPositive, "of the integration")
           .number("output_step", simulation(&S::output_step), "s", kPositive, "of the results, a multiple of `step`")
-          .number("gravity", &K::gravity, "m/s^2", kPositive, "where the vehicle drives")
+          .number("gravity", &K::gravity, "m/s^2", kPositive, "acceleration of free fall")
           .flag("longitudinal", &K::longitudinal,
                 "speed follows from torques, drag and grade of `[subject.longitudinal]`")
           .choice(
@@ -88,7 +88,7 @@ const KeyTable<DriveKeys>& DriveKeys::keys() {
                   {{"exact", BicycleGeometry::kExact}, {"small angles", BicycleGeometry::kSmallAngles}},
                   "of the four-wheel model")
           .other({"change", "", "tables `[[drive.change]]` with `time` and `grip`, or `front` and `rear`", "none",
-                  "from `time` on tyres have this share of the stiffness and friction of the beginning", true},
+                  "from `time` on, factor on the tyres' initial stiffness and friction", true},
                  read_grip);
   return table;
 }

@@ -54,13 +54,13 @@ std::string motion_csv(const LiveReplay& r) {
 std::string packets_csv(const LiveReplay& r) {
   std::string text = "sender,packets,count\n";
   for (const PacketIntake::FromSender& s : r.senders) {
-    for (std::size_t i = 0; i < kPacketStatuss; ++i)
+    for (std::size_t i = 0; i < kPacketStatuses; ++i)
       text += fmt::format("{},{},{}\n", to_string(s.sender), name_of(static_cast<PacketStatus>(i)), s.counts[i]);
   }
   if (!r.car) return text;
   // The car's reports, and what became of others on the line.
   const LinkQuality& q = r.car->quality;
-  for (std::size_t i = 0; i < kPacketStatuss; ++i) {
+  for (std::size_t i = 0; i < kPacketStatuses; ++i) {
     const auto fate = static_cast<PacketStatus>(i);
     const std::uint64_t count = fate == PacketStatus::kRepeated     ? q.reports_duplicate
                                 : fate == PacketStatus::kOutOfOrder ? q.reports_late
@@ -102,7 +102,7 @@ Summary summary_of(const OutputFolder& folder, const LiveReplay& r, const std::f
     s["car"]["pedal_to_platform_s"]["p50"] = r.car->pedal_to_platform.whole.quantile(0.5);
     s["car"]["pedal_to_platform_s"]["p99"] = r.car->pedal_to_platform.whole.quantile(0.99);
   }
-  for (std::size_t i = 0; i < kPacketStatuss; ++i)
+  for (std::size_t i = 0; i < kPacketStatuses; ++i)
     s["packets"][std::string(name_of(static_cast<PacketStatus>(i)))] = r.packets[i];
   s["states"] = Summary::array();
   for (const LiveReplay::Change& c : r.changes)

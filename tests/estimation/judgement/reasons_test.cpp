@@ -32,5 +32,13 @@ TEST(Reasons, AreTheWorstFirstWithWhatToDoAndNothingTwice) {
 
 TEST(Reasons, AreNoneWhereAllPassed) { EXPECT_TRUE(reasons_of(std::vector{held("gyro", 1.0)}).lines.empty()); }
 
+TEST(Mentions, AreWholeWords) {
+  EXPECT_TRUE(mentions("accel_y is reversed", "accel_y"));
+  EXPECT_TRUE(mentions("the scale of a", "a"));
+  EXPECT_FALSE(mentions("a clear case", "e"));
+  EXPECT_FALSE(mentions("accel_y_bias is large", "accel_y"));
+  EXPECT_FALSE(mentions("the gyro", ""));
+}
+
 }  // namespace
 }  // namespace veridyn::estimation

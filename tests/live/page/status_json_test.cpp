@@ -54,7 +54,7 @@ TEST(StatusJson, HoldsWhatThePageDraws) {
   EXPECT_EQ(json["message"], "a message");
   EXPECT_FALSE(json.contains("car"));  // there is none
   EXPECT_EQ(json["latency"]["bins"].size(), 1U);
-  EXPECT_EQ(json["packets"].size(), kPacketStatuss);
+  EXPECT_EQ(json["packets"].size(), kPacketStatuses);
   EXPECT_EQ(json["knobs"].size(), knob_values(*design).size());
 }
 

@@ -396,7 +396,7 @@ CoefficientModel coefficient_model(Coefficient c, std::span<const std::pair<std:
 const KeyTable<AeroModel>& aero_model_keys() {
   static const auto table = [] {
     KeyTable<AeroModel> keys("model",
-                             "The aerodynamic model (section 2). Each coefficient is a structure, `[\"1\", \"alpha\", "
+                             "The aerodynamic model. Each coefficient is a structure, `[\"1\", \"alpha\", "
                              "\"q_n\", \"de\"]`, or has "
                              "values too, `{ \"1\" = 0.29, alpha = 3.6, de = \"unknown\" }`, and replaces that of a "
                              "built-in subject as a whole.");

@@ -149,7 +149,8 @@ const KeyTable<Propulsion>& propulsion_keys() {
           .otherwise("required")
           .numbers("CP", &P::CP, "1", kAnyNumber, "propeller: power coefficient, powers of J from 0")
           .otherwise("required")
-          .number("J_max", &P::J_max, "1", kPositive, "propeller: the map ends here; larger J count as this")
+          .number("J_max", &P::J_max, "1", kPositive,
+                  "propeller: largest J of the map; beyond it the values at J_max hold")
           .number("rotation", &P::rotation, "1", kAnyNumber,
                   "propeller: 1 where it turns clockwise seen from behind, which rolls the body to the left; else -1")
           .check(check_kind);

@@ -37,7 +37,7 @@ const KeyTable<Inertia>& inertia_keys() {
 const KeyTable<ReferenceLengths>& length_keys() {
   using L = ReferenceLengths;
   static const auto table = KeyTable<L>("reference_lengths",
-                                        "Lengths that make moments and rates dimensionless (section 2): definitions "
+                                        "Lengths that make moments and rates dimensionless: definitions "
                                         "without error, which numbers from elsewhere may need.")
                                 .number("roll", &L::roll, "m", kPositive, "of Cl and p_n")
                                 .otherwise("the span")
@@ -168,7 +168,7 @@ const KeyTable<Subject>& subject_keys() {
               [](const StudyTable& t, const std::string& key, S& s) { s = builtin_subject(t.text(key), t.place(key)); })
           .text("name", &S::name, "of the aircraft")
           .text("description", &S::description, "where the numbers are from")
-          .text("sign_convention", &S::sign_convention, "of deflections, in words (section 1)")
+          .text("sign_convention", &S::sign_convention, "of deflections, in words")
           .number("mass", &S::mass, "kg", kPositive, "at take-off")
           .otherwise("required without `builtin`")
           .number("wing_area", &S::wing_area, "m^2", kPositive, "S")

@@ -70,7 +70,7 @@ KeyTable<O> assumption_keys() {
       .otherwise("the gyro's stamps")
       .choice("sensors", &O::sensors, {{"auto", NoiseSource::kMeasured}, {"reference", NoiseSource::kReference}},
               "`auto`: the noise floor measured in each channel, but not less than what an ordinary autopilot's errors "
-              "amount to (section 5); `reference`: the reference set, right for simulated recordings")
+              "amount to; `reference`: the reference set, right for simulated recordings")
       .other(
           turbulence_key({"auto"},
                          "`auto`: spectrum and intensity of the largest likelihood of the innovations; a table as of "
@@ -142,7 +142,7 @@ const char* to_string(FilterKind kind) {
 }
 
 const KeyTable<ReconstructOptions>& ReconstructOptions::keys() {
-  static const auto table = KeyTable<O>("reconstruct", "How the motion through the air is reconstructed (section 5).")
+  static const auto table = KeyTable<O>("reconstruct", "How the motion through the air is reconstructed.")
                                 .with(filter_keys())
                                 .with(assumption_keys())
                                 .with(tuning_keys())

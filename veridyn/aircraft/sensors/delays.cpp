@@ -425,7 +425,7 @@ class Alignment {
 }  // namespace
 
 const KeyTable<DelayAlignment>& DelayAlignment::keys() {
-  static const auto table = KeyTable<DelayAlignment>("delays", "How sensors are brought onto one clock (section 4).")
+  static const auto table = KeyTable<DelayAlignment>("delays", "How sensors are brought onto one clock.")
                                 .with(recording::DelayOptions::keys(groups()));
   return table;
 }

@@ -83,13 +83,10 @@ void read_axes(const StudyTable& table, SwingTest& test) {
     SwingAxis axis = axis_keys().read(own);
     axis.axis = name;
     if (test.cradle_mass > 0.0) {
-      std::vector<std::string> missing;
-      for (const char* of_cradle : {"cradle_length", "cradle_files"})
-        if (!own.has(of_cradle)) missing.emplace_back(of_cradle);
-      refuse_missing(own, missing);
+      require_keys(own, {"cradle_length", "cradle_files"});
       if (axis.cradle_files.empty()) own.fail("cradle_files", "is empty, but there is a cradle_mass");
-    } else if (own.has("cradle_files")) {
-      own.fail("cradle_files", "is given, but cradle_mass is 0");
+    } else {
+      refuse_keys(own, {"cradle_length", "cradle_files"}, "is given, but cradle_mass is 0");
     }
     test.axes.push_back(std::move(axis));
   }
@@ -337,9 +334,10 @@ const KeyTable<SwingTest>& SwingTest::keys() {
           .count("draws", &T::draws, 100, 100'000'000, "of the Monte Carlo")
           .table("sigma", std::identity(),
                  KeyTable<T>("sigma", "Standard errors of what was measured by hand.")
-                     .number("mass", &T::sigma_mass, "kg", kNotNegative, "of each of both")
-                     .number("filar_distance", &T::sigma_filar_distance, "m", kNotNegative, "of that")
-                     .number("length", &T::sigma_length, "m", kNotNegative, "of each of lengths and offset"))
+                     .number("mass", &T::sigma_mass, "kg", kNotNegative, "of aircraft and cradle, each")
+                     .number("filar_distance", &T::sigma_filar_distance, "m", kNotNegative,
+                             "of the distance between the lines")
+                     .number("length", &T::sigma_length, "m", kNotNegative, "of each length and of the offset"))
           .within("x", axis_keys(), read_axes)
           .check([](const StudyTable& t, T& test) {
             if (test.axes.empty()) t.fail("x", "is missing: the swing test has none of the tables x, y, z");

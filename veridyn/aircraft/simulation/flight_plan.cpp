@@ -278,10 +278,10 @@ const KeyTable<Manoeuvre>& Manoeuvre::keys() {
           .number("start", &M::start, "s", kNotNegative, "when it begins")
           .required()
           .number("duration", &M::duration, "s", kPositive, "of multisines and turns")
-          .otherwise("required for them")
+          .otherwise("required for multisines and turns")
           .choices("surfaces", &M::surfaces, choices_of<Surface>(kSurfaceNames),
                    "all but turns; in doublets and 3-2-1-1 one after another, with two seconds between")
-          .otherwise("required for them")
+          .otherwise("required except for turns")
           .other({"amplitude", "rad", "one number, or one for each surface",
                   "alpha by about 3 deg, a roll rate of 20 deg/s, sideslip of 4 deg; at most half of the travel",
                   "largest deflection; of the throttle alone without unit", true},
@@ -289,7 +289,7 @@ const KeyTable<Manoeuvre>& Manoeuvre::keys() {
           .number("pulse", &M::pulse, "s", kPositive, "length of one unit of a doublet, 3-2-1-1 or pulse")
           .other({"band", "Hz", "two frequencies", "[0.1, 2]", "of a multisine"}, read_band)
           .number("bank", &M::bank, "rad", kAnyNumber, "of a turn, positive to the right; at most 60 deg")
-          .otherwise("required for them")
+          .otherwise("required for turns")
           .check(check_manoeuvre);
   return table;
 }

@@ -110,7 +110,11 @@ const KeyTable<SimulationOptions>& SimulationOptions::keys() {
                     o.manoeuvres->push_back(Manoeuvre::keys().read(one));
                   })
           .tables("change", change_keys(), read_change)
-          .check(check);
+          .check([](const StudyTable& t, O& o) {
+            // An empty list is a flight without manoeuvres, not that of the default plan.
+            if (t.has("manoeuvre") && !o.manoeuvres) o.manoeuvres.emplace();
+            check(t, o);
+          });
   return table;
 }
 

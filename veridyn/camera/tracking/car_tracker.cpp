@@ -53,7 +53,8 @@ const KeyTable<TrackerOptions>& TrackerOptions::keys() {
                   "least height of a marker's peak above the picture's median [grey levels]")
           .number("lost_after", &O::lost_after_s, "s", kPositive,
                   "without a measurement; then the car is looked for everywhere again")
-          .number("lost_sigma", &O::lost_sigma_m, "m", kPositive, "of the predicted place; the same")
+          .number("lost_sigma", &O::lost_sigma_m, "m", kPositive,
+                  "lost as well when the predicted position is less certain than this")
           .number("longest_step", &O::longest_step_s, "s", kPositive, "between frames; a longer one is a break")
           .check([](const StudyTable& t, O&) {
             if (t.has("markers_y") && !t.has("markers_x")) t.fail("markers_x", "is missing");

@@ -107,6 +107,8 @@ struct CheckInfo {
 [[nodiscard]] std::string_view unit_of(const Evidence& row);
 /// What a row has seen, in English: the sentence of its check with the row's numbers.
 [[nodiscard]] std::string says(const Evidence& row);
+/// Whether a text holds a name as a word of its own: what need not be named again.
+[[nodiscard]] bool mentions(std::string_view text, std::string_view name);
 /// What to do where it did not pass; empty where nothing is to be done.
 [[nodiscard]] std::string advice_of(const Evidence& row);
 

@@ -42,9 +42,10 @@ std::vector<Alike> worst_first(std::span<const Evidence> rows) {
 
 std::string text_of(const Evidence& row, std::vector<std::string> others) {
   const std::string seen = says(row);
-  const bool named = row.about.empty() || seen.find(row.about) != std::string::npos;
+  const bool named = row.about.empty() || mentions(seen, row.about);
   std::string text = named ? seen : fmt::format("{}: {}", row.about, seen);
   std::erase(others, row.about);
+  std::erase(others, "");
   if (!others.empty()) text += fmt::format(" (likewise {})", fmt::join(others, ", "));
   return text;
 }

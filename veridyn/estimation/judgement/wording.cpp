@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cctype>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -83,6 +84,15 @@ const Figure* Evidence::figure(std::string_view key) const {
 std::string_view name_of(const Evidence& row) { return to_string(row.check); }
 
 std::string_view unit_of(const Evidence& row) { return info_of(row.check).unit; }
+
+bool mentions(std::string_view text, std::string_view name) {
+  const auto in_word = [&](std::size_t k) {
+    return k < text.size() && (std::isalnum(static_cast<unsigned char>(text[k])) != 0 || text[k] == '_');
+  };
+  for (std::size_t at = text.find(name); at != text.npos; at = text.find(name, at + 1))
+    if ((at == 0 || !in_word(at - 1)) && !in_word(at + name.size())) return true;
+  return false;
+}
 
 std::string says(const Evidence& row) { return first_that_fits(info_of(row.check).says, row); }
 

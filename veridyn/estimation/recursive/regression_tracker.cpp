@@ -62,7 +62,7 @@ const KeyTable<TrackerOptions>& TrackerOptions::keys() {
           .choice("method", &O::method,
                   {{"PCA-GTLS", Method::kPcaGtls}, {"GTLS", Method::kGtls}, {"OLS", Method::kOls}},
                   "`PCA-GTLS` holds what is not excited")
-          .number("memory", &O::memory_s, "s", kPositive, "a sample counts 5 % after this time")
+          .number("memory", &O::memory_s, "s", kPositive, "time after which a sample's weight has fallen to 5 %")
           .choice("forgetting", forgetting(&F::variable), {{"variable", true}, {"constant", false}},
                   "`variable`: a shorter memory while innovations are large")
           .number("lambda", forgetting(&F::lambda), "1", kAnyNumber, "weight of squares per row, in place of `memory`")
@@ -72,21 +72,22 @@ const KeyTable<TrackerOptions>& TrackerOptions::keys() {
                   "window of the innovations' power, in multiples of the number of parameters")
           .number("K_b", forgetting(&F::K_b), "1", kAnyNumber, "window of the noise's power, likewise; more than `K_a`")
           .number("gamma", forgetting(&F::gamma), "1", kAnyNumber,
-                  "standard deviation of innovations over that of the noise from which they are large")
+                  "innovations are large when their standard deviation exceeds the noise's by this factor")
           .flag("row_weight", forgetting(&F::row_weight),
                 "weights rows, not their squares, by the forgetting factor, which halves the memory: only to reproduce "
                 "published results")
           .number("signal_to_noise", &O::signal_to_noise, "1", from_to(1.0, 10.0), "S/n of the excitation threshold")
           .flag("detect_changes", &O::detect_changes, "innovations and the first parameter are watched for changes")
           .number("false_alarm_interval", detection(&D::false_alarm_interval_s), "s", kPositive,
-                  "mean time between false alarms where nothing changes")
+                  "mean time between false alarms where nothing changes: of one coefficient of a flight, of both axles "
+                  "of a drive")
           .number("detection_block", detection(&D::block_s), "s", kPositive, "innovations are averaged over this long")
           .number("detection_learning", detection(&D::learn_s), "s", kPositive,
                   "unchanged innovations are learned this long before they are watched")
           .number("detection_memory", detection(&D::memory_s), "s", kPositive, "and followed with this memory")
           .number("detection_settling", detection(&D::settle_s), "s", kAnyNumber,
                   "not watched for this long after an alarm")
-          .number("history_rate", &O::history_Hz, "Hz", kPositive, "of what is kept for report and history.csv")
+          .number("history_rate", &O::history_Hz, "Hz", kPositive, "of what is kept for the report and track.csv")
           .check([](const StudyTable& t, O& o) {
             if (t.has("lambda")) {
               if (t.has("memory")) t.fail("memory", "and lambda say the same thing; give one of them");

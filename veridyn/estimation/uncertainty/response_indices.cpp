@@ -60,8 +60,8 @@ const KeyTable<GivenInputs::Input>& input_keys() {
           .required()
           .number("range", &I::range, "1", between(0.0, 1.0), "share of the nominal value up and down")
           .otherwise("that of all")
-          .other({"low", "SI", "", "by `range`", "or both bounds", true}, later)
-          .other({"high", "SI", "", "by `range`", "", true}, later)
+          .other({"low", "SI", "", "by `range`", "lower bound, in place of `range`", true}, later)
+          .other({"high", "SI", "", "by `range`", "upper bound", true}, later)
           .check([](const StudyTable& t, I& input) { input.table = t; });
   return table;
 }
@@ -114,7 +114,7 @@ const KeyTable<GivenInputs>& GivenInputs::keys() {
       KeyTable<G>("sensitivity")
           .number(
               "range", &G::range, "1", between(0.0, 1.0),
-              "share of the nominal value by which inputs go up and down that do not say otherwise; \"10 %\" is 0.1")
+              "variation of each input that has no range of its own, as a share of its nominal value: \"10 %\" is 0.1")
           .tables("input", input_keys(),
                   [](const StudyTable& one, G& g) { g.inputs.push_back(input_keys().read(one)); })
           .check([](const StudyTable& t, G& g) {

@@ -91,7 +91,7 @@ std::string status_json(const RigStatus& status, const LiveStudy& study, const F
                          {"rider", felt.now()->rider[cue]},
                          {"threshold", felt.threshold()[cue]}});
   }
-  for (std::size_t i = 0; i < kPacketStatuss; ++i)
+  for (std::size_t i = 0; i < kPacketStatuses; ++i)
     j["packets"].push_back(
         {{"name", std::string(name_of(static_cast<PacketStatus>(i)))}, {"count", status.packets[i]}});
   const LatencyHistogram& h = status.times.receive_to_send;

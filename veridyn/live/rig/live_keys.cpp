@@ -22,12 +22,13 @@ const KeyTable<RigOptions>& rig_keys() {
                   "largest change of a specific force: crashes and landings are kept off the platform")
           .number("soft_start", &O::soft_start, "s", from_to(0.5, 60.0), "until the platform follows the whole motion")
           .number("hold", &O::hold, "s", from_to(0.0, 10.0), "the last order stands when telemetry is lost")
-          .number("fade", &O::fade, "s", from_to(0.5, 60.0), "on the way to park")
-          .number("lost_after", &O::lost_after, "s", from_to(0.05, 5.0), "without a packet that was accepted")
+          .number("fade", &O::fade, "s", from_to(0.5, 60.0), "time in which the platform moves to park")
+          .number("lost_after", &O::lost_after, "s", from_to(0.05, 5.0),
+                  "telemetry counts as lost after this long without an accepted packet")
           .number("frozen_after", &O::frozen_after, "s", from_to(0.1, 60.0),
-                  "of packets with the same motion of a vehicle that moves")
+                  "telemetry counts as frozen after this long of unchanged motion while the vehicle moves")
           .number("stale_after", stale_after, "s", from_to(0.01, 5.0),
-                  "by which a packet may come later than the quickest ones")
+                  "a packet later than the quickest ones by this much is stale")
           .number("unanswered_after", &O::unanswered_after, "s", from_to(0.02, 5.0),
                   "without an answer of the platform")
           .choice("signs", &O::signs,
@@ -69,7 +70,8 @@ const KeyTable<LiveStudy>& LiveStudy::keys() {
                    s.page = parse_address(t.text(key), t.place(key));
                  })
           .file("page_token", &S::page_token,
-                "holds what a control there needs; needed beyond loopback, else one is drawn")
+                "file with the token that controls on the page require; needed beyond loopback, drawn at random "
+                "otherwise")
           .number("page_rate", &S::page_rate, "Hz", from_to(1.0, 60.0), "how often the page moves");
   return table;
 }

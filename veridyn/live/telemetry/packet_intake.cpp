@@ -33,7 +33,7 @@ void check_motion(const io::PacketLayout& layout) {
   if (!attitude && !has_all({"gyro_x", "gyro_y", "gyro_z"}))
     throw InputError(place, "holds no angular rates, and no attitude to derive them from");
   if ((body || world) && !layout.gravity_in)
-    throw InputError(place, "`gravity` is missing: \"in\" or \"out\" says whether accelerations hold gravity");
+    throw InputError(place, "`gravity` is missing: \"in\" or \"out\" says whether accelerations contain gravity");
   if (layout.gravity_in == false && !attitude)
     throw InputError(place, "holds accelerations without gravity and no attitude: what is felt is not known");
 }
@@ -233,7 +233,7 @@ void PacketIntake::count(const Sender& sender, PacketStatus fate) {
 PerPacketStatus<std::uint64_t> PacketIntake::counts() const {
   PerPacketStatus<std::uint64_t> all = {};
   for (const FromSender& s : senders_) {
-    for (std::size_t i = 0; i < kPacketStatuss; ++i) all[i] += s.counts[i];
+    for (std::size_t i = 0; i < kPacketStatuses; ++i) all[i] += s.counts[i];
   }
   return all;
 }

@@ -26,9 +26,9 @@ enum class PacketStatus {
   kOtherSender,  ///< while another one is listened to
   kUnrecognised  ///< while it is found out which packets they are
 };
-inline constexpr std::size_t kPacketStatuss = 9;
+inline constexpr std::size_t kPacketStatuses = 9;
 template <class T>
-using PerPacketStatus = EnumArray<PacketStatus, T, kPacketStatuss>;
+using PerPacketStatus = EnumArray<PacketStatus, T, kPacketStatuses>;
 /// "accepted", "of a wrong size", ...
 [[nodiscard]] std::string_view name_of(PacketStatus fate);
 

@@ -93,7 +93,12 @@ KeyTable<MotionTable> shared_keys() {
               "energy that the muscles use, by whose equations")
       .elsewhere({"slow_twitch", "", "from 0 to 1", "0.5 of each", "a table: share of slow fibres by `MUSCLE`", true})
       .number("aerobic_factor", &O::aerobic_factor, "1", kAnyNumber, "Umberger's factor S; 1 for short efforts")
-      .flag("induced_accelerations", &O::induced_accelerations, "what each force contributes to each acceleration");
+      .flag("induced_accelerations", &O::induced_accelerations, "what each force contributes to each acceleration")
+      .check([](const StudyTable& t, O& o) {
+        if (!t.has("file")) refuse_keys(t, {"low_pass"}, "is of the samples of `file`, and there is none");
+        if (!t.has("excitation_file")) refuse_keys(t, {"interpolation"}, "is of `excitation_file`, and there is none");
+        if (!o.metabolic) refuse_keys(t, {"aerobic_factor"}, "is of metabolic_cost, which is none");
+      });
 }
 
 }  // namespace

@@ -371,7 +371,12 @@ const KeyTable<TaskTable>& TaskTable::keys() {
           .choice("interpolation", &O::interpolation, internal::interpolations(), "as in `[motion]`")
           .elsewhere({"angles", "", "a file", "", "with `[emg]`: columns by coordinate"})
           .elsewhere({"moments", "", "a file", "", "with `[emg]`: outputs, such as `COORDINATE_moment`"})
-          .elsewhere({"emg", "", "a file", "", "with `[emg]`: envelopes within 0 .. 1, or in the unit of `maximum`"});
+          .elsewhere({"emg", "", "a file", "", "with `[emg]`: envelopes within 0 .. 1, or in the unit of `maximum`"})
+          .check([](const StudyTable& t, O&) {
+            if (!t.has("file")) refuse_keys(t, {"low_pass"}, "is of the samples of `file`, and there is none");
+            if (!t.has("excitation_file"))
+              refuse_keys(t, {"interpolation"}, "is of `excitation_file`, and there is none");
+          });
   return table;
 }
 

@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "veridyn/core/study_keys.hpp"
+
 namespace veridyn::muscle {
 namespace {
 
@@ -64,7 +66,7 @@ const KeyTable<MuscleUnknownSpec>& parameter_keys() {
           .repeated()
           .text("name", &S::name, "for messages and results")
           .otherwise("`MUSCLE.FIELD`")
-          .texts("muscles", &S::muscles, "whose; `[\"all\"]`: every muscle's")
+          .texts("muscles", &S::muscles, "muscles it applies to; `[\"all\"]`: every one")
           .required()
           .texts("fields", &S::fields,
                  "of `[subject.parameters]`, or `tendon_strain_factor`, `excitation_gain`, `excitation_delay`")
@@ -75,7 +77,7 @@ const KeyTable<MuscleUnknownSpec>& parameter_keys() {
           .elsewhere(
               {"low", "% or the field's", "", "of `bounds`", "instead: in percent from the start, or a value", true})
           .elsewhere({"high", "% or the field's", "", "of `bounds`", "the same", true})
-          .elsewhere({"prior", "% or the field's", "", "of a value within the bounds",
+          .elsewhere({"prior", "% or the field's", "", "that of a value anywhere within the bounds",
                       "standard deviation of what is known before", true})
           .flag("fixed", &S::fixed, "it stays at its start");
   return table;

@@ -211,7 +211,7 @@ const KeyTable<SimulatedPerson>& SimulatedPerson::keys() {
           .number("noise_correlation", &P::noise_correlation_s, "s", kNotNegative,
                   "correlation time of that noise, of first order; 0: white")
           .number("moment_noise", &P::moment_noise, "N m", kNotNegative,
-                  "with `[emg]`: of measured moments of which `[[output]]` says no other")
+                  "with `[emg]`: of measured moments without a noise in `[[output]]`")
           .number("emg_noise", &P::emg_noise, "1", internal::kBelowOne, "with `[emg]`: of the EMG over its value")
           .otherwise("as `emg.noise`")
           .choice("muscles", &P::millard, {{"as the model", false}, {"millard", true}},
@@ -251,7 +251,8 @@ const KeyTable<MuscleIdentifyTable>& MuscleIdentifyTable::keys() {
                   "`gradient`: least squares with exact sensitivities; `published`: particle swarms, then pattern "
                   "search, by values only")
           .number("tolerance", &O::tolerance, "1", kPositive, "published: greatest NRMSE of a task")
-          .count("evaluations", &O::evaluations, 1, 1'000'000'000, "published: at most, each of all tasks")
+          .count("evaluations", &O::evaluations, 1, 1'000'000'000,
+                 "published: most evaluations; each simulates all tasks")
           .file("log", &O::log, "published: keeps every evaluation; a log that is there is continued")
           .check([](const StudyTable& t, O& o) {
             for (const char* key : {"tolerance", "evaluations", "log"})

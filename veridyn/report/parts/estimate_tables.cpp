@@ -59,7 +59,7 @@ Row evidence_row(const estimation::Evidence& row, bool said) {
     limit += c == ' ' ? std::string("\u00a0") : std::string(1, c);
   const bool on_all =
       std::ranges::all_of(estimation::kPurposes, [&](estimation::Purpose p) { return row.bears_on.contains(p); });
-  return {.cells = {text_cell(name.find(row.about) != name.npos ? name : fmt::format("{}: {}", row.about, name)),
+  return {.cells = {text_cell(estimation::mentions(name, row.about) ? name : fmt::format("{}: {}", row.about, name)),
                     std::move(value), text_cell(std::move(limit)), text_cell(unit.unit),
                     text_cell(said ? "see the top of this page" : estimation::says(row)),
                     text_cell(on_all                 ? "all"

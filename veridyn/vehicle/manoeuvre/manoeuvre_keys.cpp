@@ -105,7 +105,7 @@ const KeyTable<RandomSteerKeys>& RandomSteerKeys::keys() {
                                 .number("low", &K::low, "Hz", kPositive, "lowest frequency")
                                 .number("high", &K::high, "Hz", kPositive, "highest frequency")
                                 .number("length", &K::length, "s", kPositive, "of the signal")
-                                .count("seed", &K::seed, 0, 9007199254740992, "of the random phases")
+                                .count("seed", &K::seed, 0, kLargestSeed, "of the random phases")
                                 .otherwise("the study's `seed`");
   return table;
 }

@@ -44,6 +44,13 @@ PiecewiseLinear torque(const StudyTable& drive, const char* key, const std::vect
 /// The manoeuvre with what drives and brakes.
 Manoeuvre with_longitudinal(Manoeuvre manoeuvre, const StudyTable& drive, const ManoeuvreContext& context) {
   const TorqueKeys keys = TorqueKeys::keys().read(drive);
+  for (const char* key : {"drive_torque", "brake_torque"}) {
+    if (!drive.is_array(key)) continue;
+    require_keys(drive, {"torque_time"});
+    if (drive.numbers(key, "N m").empty()) drive.fail(key, "is empty");
+  }
+  if (!drive.has("drive_torque") && !drive.has("brake_torque"))
+    refuse_keys(drive, {"torque_time"}, "is of drive_torque and brake_torque, and there is neither");
   for (const char* key : {"hold_speed", "target_speed", "drive_torque", "brake_torque"}) {
     if (drive.has(key) && !drive.flag_or("longitudinal", false)) drive.fail(key, "needs longitudinal = true");
   }
@@ -63,12 +70,10 @@ Manoeuvre with_longitudinal(Manoeuvre manoeuvre, const StudyTable& drive, const 
 Manoeuvre read_signal(const StudyTable& drive) {
   const SignalKeys keys = SignalKeys::keys().read(drive);
   if (!keys.file) {
-    std::vector<std::string> missing;
-    for (const char* key : {"time", "steer"})
-      if (!drive.has(key)) missing.emplace_back(key);
-    refuse_missing(drive, missing);
+    require_keys(drive, {"time", "steer"});
     return steering_signal(PiecewiseLinear(keys.time, keys.steer));
   }
+  refuse_keys(drive, {"time", "steer"}, "is given as well as `file`: give one of them");
   const io::Table table = io::read_table(*keys.file);
   (void)table.at("time");
   (void)table.at("steer");
@@ -78,17 +83,21 @@ Manoeuvre read_signal(const StudyTable& drive) {
 
 Manoeuvre read_circle(const StudyTable& drive, const ManoeuvreContext& context) {
   const CircleKeys keys = CircleKeys::keys().read(drive);
-  if (!keys.constant_radius) return slowly_increasing_steer(keys.amplitude, keys.rate, keys.start);
-  std::vector<std::string> missing;
-  if (std::isnan(keys.radius)) missing.emplace_back("radius");
-  if (std::isnan(keys.end_speed)) missing.emplace_back("end_speed");
-  refuse_missing(drive, missing);
+  if (!keys.constant_radius) {
+    refuse_keys(drive, {"radius", "end_speed", "length", "preview_time", "delay", "lag", "max_steer", "max_steer_rate"},
+                "is of method = \"constant radius\"");
+    return slowly_increasing_steer(keys.amplitude, keys.rate, keys.start);
+  }
+  refuse_keys(drive, {"rate", "amplitude", "start"}, "is of method = \"constant speed\"");
+  require_keys(drive, {"radius", "end_speed"});
   return constant_radius_circle(context, keys.radius, keys.end_speed, keys.length, keys.driver);
 }
 
 Manoeuvre read_path_manoeuvre(const StudyTable& drive, const ManoeuvreContext& context) {
   const FollowPathKeys keys = FollowPathKeys::keys().read(drive);
-  if (!keys.file && std::isnan(keys.radius))
+  if (keys.file)
+    refuse_keys(drive, {"radius", "direction"}, "is of a circle, and there is a `file`: give one of them");
+  else if (std::isnan(keys.radius))
     drive.fail("manoeuvre", "follow path needs a file or the radius of a circle");
   return follow_path(
       context, std::make_shared<const Path>(keys.file ? read_path(*keys.file) : Path::circle(keys.radius, keys.side)),

@@ -93,10 +93,10 @@ KeyTable<AxleSuspension> suspension_keys(char suffix) {
       .other(
           {travel, "m", "two numbers or more, growing", "none", "a spring by table in place of K_s: its travel", true},
           [travel, force](const StudyTable& t, const std::string&, A& axle) {
+            std::vector<double> travels = t.numbers(travel, "m"), forces = t.numbers(force, "N");
             try {
-              axle.spring = SpringCurve(t.numbers(travel, "m"), t.numbers(force, "N"));
+              axle.spring = SpringCurve(std::move(travels), std::move(forces));
             } catch (const InputError& wrong) {
-              if (wrong.place() == t.place(force)) throw;
               t.fail(force, std::string_view(wrong.what()).substr(wrong.place().size() + 2));
             }
           })

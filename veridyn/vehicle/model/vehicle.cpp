@@ -287,9 +287,10 @@ bool is_vehicle_study(const StudyTable& root) {
   if (names(root, "subject") && root.is_table("subject")) {
     const StudyTable subject = root.table("subject");
     if (names(subject, "kind")) return subject.is_text("kind") && subject.text("kind") == "vehicle";
-    if (names(subject, "builtin") && subject.is_text("builtin"))
-      return std::ranges::find(builtin_vehicles(), subject.text("builtin"), &BuiltinVehicle::name) !=
-             builtin_vehicles().end();
+    if (names(subject, "builtin") && subject.is_text("builtin") &&
+        std::ranges::find(builtin_vehicles(), subject.text("builtin"), &BuiltinVehicle::name) !=
+            builtin_vehicles().end())
+      return true;
     const auto of_vehicles = [](std::string_view key) {
       return key != "mass" && index_of(key) < kVehicleFields.size();
     };

@@ -48,7 +48,7 @@ const KeyTable<Iso8608Options>& random_keys() {
           .number("coherence_length", &O::coherence_length, "m", kAnyNumber,
                   "waves much longer are the same on both sides; 0: all are")
           .number("fade_in", &O::fade_in, "m", kAnyNumber, "over which the road grows from a level one")
-          .count("seed", &O::seed, 0, 9007199254740992, "of the random phases")
+          .count("seed", &O::seed, 0, kLargestSeed, "of the random phases")
           .otherwise("the study's `seed`")
           .check([](const StudyTable& t, O& o) {
             if (t.has("class") && t.has("roughness"))

@@ -51,9 +51,12 @@ KeyTable<DriveSensor> keys_of_sensor(std::string_view unit, const std::string& t
                      "`lateral_velocity` or `position`.")
       .flag("enabled", &S::enabled, "a table switches its sensor on")
       .number("rate", &S::rate_Hz, "Hz", kPositive, "of its samples")
-      .number("sigma", &S::sigma, u, kNotNegative, "standard deviation of the white noise")
+      .otherwise("that of the set")
+      .number("sigma", &S::sigma, u, kNotNegative, "standard deviation of the white noise, in the sensor's unit")
+      .otherwise("that of the set")
       .number("bias", &S::bias, u, kAnyNumber, "fixed")
       .number("bias_sigma", &S::bias_sigma, u, kNotNegative, "standard deviation of a further bias, drawn once a drive")
+      .otherwise("that of the set")
       .number("scale", &S::scale, "1", {.low = -1.0, .with_low = false}, "error of scale")
       .number("delay", &S::delay_s, "s", kAnyNumber, "from event to time stamp");
 }

@@ -87,9 +87,10 @@ const KeyTable<DriveTrackOptions>& DriveTrackOptions::keys() {
                   "of the causal filters; lower ones remove more noise and are later")
           .number("start_sigma", &O::start_sigma, "1", kPositive,
                   "relative standard deviation of the subject's stiffnesses at the start")
-          .number("learning", &O::learning_s, "s", kNotNegative,
-                  "from so much of the drive's beginning the body is learned where no estimate has it; 0: a body that "
-                  "does not lean, with the I_z of the subject")
+          .number(
+              "learning", &O::learning_s, "s", kNotNegative,
+              "first part of the drive, from which lean and I_z are learned where no estimate gives them; 0: a body "
+              "that does not lean, with the I_z of the subject")
           .file("estimate_file", &O::estimate_file, "`estimate.json` to start from")
           .was("estimate")
           .otherwise("the subject's C_f and C_r");

@@ -51,10 +51,11 @@ struct FormulaFlight {
     record(name, unit, [value](double) { return value; });
   }
   [[nodiscard]] FlightSignals prepared(const SignalOptions& options = {}) const {
-    return prepare_signals(mapped, smoothed, subject, options);
+    return prepare_signals(mapped, smoothed, flow_sensors(reconstruct, smoothed), subject, options);
   }
   MappedRecording mapped;
   Recording smoothed;
+  ReconstructOptions reconstruct = {};
   Subject subject = builtin_subject("thor");
 };
 
@@ -101,7 +102,7 @@ TEST(FlightSignals, TakeTheVaneLessItsBiasOrTheSmoothersAngle) {
   const FlightSignals vane = flight.prepared();
   EXPECT_NEAR(vane[F::kAlpha].value[middle(vane)], 0.06, 1e-9);
   EXPECT_EQ(vane[F::kAlpha].error, ErrorKind::kClassical);
-  EXPECT_THAT(vane.notes, Contains("alpha vane: estimated bias of 2.29 deg taken off"));
+  EXPECT_THAT(vane.notes, Contains("vanes: estimated bias of alpha of 2.29 deg taken off"));
   EXPECT_EQ(vane[F::kBeta].origin, "smoother") << "there is no vane of that";
   SignalOptions options;
   options.flow_angles = FlowAngles::kSmoothed;
@@ -160,7 +161,7 @@ TEST(FlightSignals, MeasureNoiseOrTakeWhatIsGiven) {
   EXPECT_EQ(s[F::kQ].sigma, 0.0) << "a gyro that shows no noise";
   SensorSigma sheet;
   sheet.gyro = 0.01;
-  const FlightSignals known = prepare_signals(flight.mapped, flight.smoothed, flight.subject, options, &sheet);
+  const FlightSignals known = prepare_signals(flight.mapped, flight.smoothed, {}, flight.subject, options, &sheet);
   EXPECT_DOUBLE_EQ(known[F::kQ].sigma, 0.01 * std::sqrt(kernel.noise_gain()));
   EXPECT_DOUBLE_EQ(known[F::kP].sigma, s[F::kP].sigma) << "the user's word comes first";
 }

@@ -81,7 +81,7 @@ const KeyTable<UncertaintyOptions>& UncertaintyOptions::keys() {
           std::string(kFlightSignalNames[signal]), [signal](O & o) -> auto& { return o.sigma[signal]; },
           std::string(kUnits[signal]), kNotNegative, "");
     errors.number("air_density", &O::sigma_air_density, "kg/m^3", kNotNegative, "");
-    return KeyTable<O>("uncertainty", "The Monte Carlo run of what measured coefficients are worth (section 8).")
+    return KeyTable<O>("uncertainty", "The Monte Carlo run of what measured coefficients are worth.")
         .flag("enabled", &O::enabled, "whether it is run")
         .count("draws", &O::draws, 100, 100'000'000, "how often every input is drawn")
         .table("sigma", std::identity(), errors);

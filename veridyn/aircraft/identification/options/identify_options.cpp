@@ -74,7 +74,7 @@ std::string IdentifyOptions::method_name() const {
 const KeyTable<IdentifyOptions>& IdentifyOptions::keys() {
   using O = IdentifyOptions;
   static const auto table =
-      KeyTable<O>("identify", "How the coefficients are identified, and what is demanded of the result (section 9).")
+      KeyTable<O>("identify", "How the coefficients are identified, and what is demanded of the result.")
           .choices("coefficients", &O::coefficients, choices_of<Coefficient>(kCoefficientNames), "which are identified")
           .otherwise("all that the subject models")
           .other({"method", "", quoted_list(method_names(), "`"), "\"auto\"",
@@ -96,8 +96,8 @@ const KeyTable<IdentifyOptions>& IdentifyOptions::keys() {
               "structure", &O::structure,
               {{"given", {}}, {"stepwise", StructureMethod::kStepwise}, {"orthogonal", StructureMethod::kOrthogonal}},
               "`given`: the subject's terms; else they are chosen among candidates first")
-          .other({"candidates", "", "`CL = [\"1\", \"alpha\", \"alpha*q_n\"]`, for each coefficient", "see section 9",
-                  "terms to choose among; a table, needs `structure`", true},
+          .other({"candidates", "", "`CL = [\"1\", \"alpha\", \"alpha*q_n\"]`, for each coefficient",
+                  "see docs/aircraft.md, section 9", "terms to choose among; a table, needs `structure`", true},
                  read_candidates)
           .flag("output_error", &O::output_error, "output-error maximum likelihood alongside regression")
           .flag("output_error_gusts", &O::output_error_gusts,

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "veridyn/aircraft/reconstruction/corrected_flow.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct_streams.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
@@ -63,6 +64,10 @@ Recording direct_air_data(const Recording& recording, const ReconstructOptions& 
   out.set(make_channel("airspeed", "m/s", time, std::move(even)));
   out.set(make_channel("sigma_airspeed", "m/s", time, std::move(sigma)));
   out.set(make_channel("air_density", "kg/m^3", time, std::move(rho)));
+  // Of the centre of gravity, as a filter's are.
+  const CorrectedFlow flow = with_corrected_flow({.recording = recording}, flow_sensors(reconstruct, out), out);
+  for (const char* name : {"alpha", "beta"})
+    if (out.has(name)) out.set(flow.mapped.recording.at(name));
   return out;
 }
 

@@ -165,15 +165,9 @@ double typical_sigma(const Recording& smoothed, const std::string& name) {
   return numerics::rms(sigma->value);
 }
 
-/// A flow angle and what was assumed of it.
-struct FlowAngle {
-  GridSignal signal;
-  std::string note;  ///< empty: nothing
-};
-
 /// @param smoothed_angle the smoother's, on the grid; empty where there is none
-FlowAngle flow_angle(const GriddedChannels& channels, const CommonGrid& common, const Recording& smoothed,
-                     FlowAngles choice, const std::string& name, const std::vector<double>& smoothed_angle) {
+GridSignal flow_angle(const GriddedChannels& channels, const CommonGrid& common, const Recording& smoothed,
+                      FlowAngles choice, const std::string& name, const std::vector<double>& smoothed_angle) {
   const Channel* vane = channels.find(name);
   if (choice == FlowAngles::kVane && vane == nullptr) {
     throw InputError(channels.source(),
@@ -182,23 +176,13 @@ FlowAngle flow_angle(const GriddedChannels& channels, const CommonGrid& common, 
   if (vane == nullptr && smoothed_angle.empty()) return {};
   if (vane == nullptr || (choice == FlowAngles::kSmoothed && !smoothed_angle.empty())) {
     // The smoother follows what the filter cannot: the same pass band for all regressors.
-    return {.signal = {.value = numerics::filter(smoothed_angle, common.smooth),
-                       .sigma = typical_sigma(smoothed, "sigma_" + name),
-                       .error = ErrorKind::kBerkson,
-                       .origin = "smoother"},
-            .note = {}};
+    return {.value = numerics::filter(smoothed_angle, common.smooth),
+            .sigma = typical_sigma(smoothed, "sigma_" + name),
+            .error = ErrorKind::kBerkson,
+            .origin = "smoother"};
   }
   const std::vector<double> raw = channels.raw(name);
-  FlowAngle angle{.signal = channels.filtered(common.smooth, name, raw, channels.noise_of(name, raw), "filtered vane"),
-                  .note = {}};
-  // The smoother may have found a bias of the vane: the mean difference where both are there.
-  const Channel* bias = smoothed.find(name + "_bias");
-  if (bias != nullptr && !bias->empty()) {
-    const double b = numerics::median(bias->value);
-    for (double& v : angle.signal.value) v -= b;
-    angle.note = fmt::format("{} vane: estimated bias of {:.2f} deg taken off", name, b / kDegree);
-  }
-  return angle;
+  return channels.filtered(common.smooth, name, raw, channels.noise_of(name, raw), "filtered vane");
 }
 
 /// Air density on the grid [kg/m^3]; where it is missing the last known one.
@@ -219,7 +203,6 @@ struct FlowSignals {
   GridSignal airspeed, alpha, beta;
   std::vector<double> alpha_smoothed, beta_smoothed;  ///< the smoother's, whatever is regressed on
   std::vector<double> air_density;                    ///< [kg/m^3]
-  std::vector<std::string> notes;
 };
 
 FlowSignals flow_signals(const GriddedChannels& channels, const CommonGrid& common, const Recording& smoothed,
@@ -231,23 +214,19 @@ FlowSignals flow_signals(const GriddedChannels& channels, const CommonGrid& comm
   };
   std::vector<double> alpha_smoothed = estimated("alpha");
   std::vector<double> beta_smoothed = estimated("beta");
-  FlowAngle alpha = flow_angle(channels, common, smoothed, choice, "alpha", alpha_smoothed);
-  FlowAngle beta = flow_angle(channels, common, smoothed, choice, "beta", beta_smoothed);
-  std::vector<std::string> notes;
-  for (const FlowAngle* angle : {&alpha, &beta})
-    if (!angle->note.empty()) notes.push_back(angle->note);
+  GridSignal alpha = flow_angle(channels, common, smoothed, choice, "alpha", alpha_smoothed);
+  GridSignal beta = flow_angle(channels, common, smoothed, choice, "beta", beta_smoothed);
   for (std::vector<double>* angle : {&alpha_smoothed, &beta_smoothed})
     if (angle->empty()) angle->assign(common.grid.count, kNaN);
   return {.airspeed = {.value = on_grid(smoothed.at("airspeed"), common.grid),
                        .sigma = typical_sigma(smoothed, "sigma_airspeed"),
                        .error = recorded ? ErrorKind::kClassical : ErrorKind::kBerkson,
                        .origin = recorded ? "filtered airspeed" : "smoother"},
-          .alpha = std::move(alpha.signal),
-          .beta = std::move(beta.signal),
+          .alpha = std::move(alpha),
+          .beta = std::move(beta),
           .alpha_smoothed = std::move(alpha_smoothed),
           .beta_smoothed = std::move(beta_smoothed),
-          .air_density = air_density_on(smoothed, common.grid),
-          .notes = std::move(notes)};
+          .air_density = air_density_on(smoothed, common.grid)};
 }
 
 /// Changes within one sample by a good part of the throw, with little change before and after. A servo with a lag of
@@ -377,7 +356,7 @@ void velocity_through_mean_air(const Recording& smoothed, FlightSignals& flight)
 const KeyTable<SignalOptions>& SignalOptions::keys() {
   using O = SignalOptions;
   static const auto table =
-      KeyTable<O>("signals", "How recorded channels become signals on one grid (section 6).")
+      KeyTable<O>("signals", "How recorded channels become signals on one grid.")
           .number("rate", &O::rate_Hz, "Hz", kPositive, "of the common grid; at least 10")
           .otherwise("the gyro's, at most 100; of several flights that of the slowest")
           .number("pass_band", &O::pass_Hz, "Hz", kPositive, "frequencies up to here are kept unchanged")
@@ -399,10 +378,12 @@ FlightSample<double> FlightSignals::sample(std::size_t k) const {
   return s;
 }
 
-FlightSignals prepare_signals(const MappedRecording& mapped, const Recording& smoothed, const Subject& subject,
-                              const SignalOptions& options, const SensorSigma* known, int threads) {
+FlightSignals prepare_signals(const MappedRecording& mapped, const Recording& smoothed, const FlowSensors& vanes,
+                              const Subject& subject, const SignalOptions& options, const SensorSigma* known,
+                              int threads) {
   const CommonGrid common = common_grid(mapped, options);
-  const GriddedChannels channels(mapped, common, options, known);
+  const CorrectedFlow corrected = with_corrected_flow(mapped, vanes, smoothed);
+  const GriddedChannels channels(corrected.mapped, common, options, known);
   const numerics::UniformGrid& grid = common.grid;
   FlightSignals flight;
   flight.grid = grid;
@@ -458,7 +439,7 @@ FlightSignals prepare_signals(const MappedRecording& mapped, const Recording& sm
   }
 
   ThrustSignals thrust = thrust_signals(channels, common, subject.propulsion, flow);
-  for (std::string& text : flow.notes) note(std::move(text));
+  note(corrected.note);
   note(std::move(thrust.note));
   flight[F::kAirspeed] = std::move(flow.airspeed);
   flight[F::kAlpha] = std::move(flow.alpha);

@@ -6,6 +6,7 @@
 
 #include "veridyn/aircraft/identification/signals/measured_coefficients.hpp"
 #include "veridyn/aircraft/model/subject.hpp"
+#include "veridyn/aircraft/reconstruction/corrected_flow.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct_options.hpp"
 #include "veridyn/aircraft/sensors/channel_map.hpp"
 #include "veridyn/core/study.hpp"
@@ -67,13 +68,15 @@ struct FlightSignals : recording::GridSignals<FlightSignal, kFlightSignals> {
 /// vane) flow angles from the reconstruction `smoothed` (channels `airspeed`, `alpha`, `sigma_airspeed`, ...). The
 /// accelerometer is moved to the centre of gravity. Thrust is the channel `thrust` or, with `throttle`, the subject's
 /// propulsion model.
+/// `vanes` is what is known of them (`flow_sensors`): angles are those of the centre of gravity, by `corrected_flow`.
 /// `known` gives the sensors' noise where their data sheet is known; otherwise it is measured.
 /// Where `smoothed.information` says that the airspeed is as recorded, its error is taken for a classical one.
 /// What the recording and `smoothed` lack is not available, and attitude and wind are NaN.
 /// @param threads  0: as many as the machine has
 /// @throws InputError when gyro or smoothed airspeed are missing.
 [[nodiscard]] FlightSignals prepare_signals(const MappedRecording& mapped, const Recording& smoothed,
-                                            const Subject& subject, const SignalOptions& options,
-                                            const SensorSigma* known = nullptr, int threads = 0);
+                                            const FlowSensors& vanes, const Subject& subject,
+                                            const SignalOptions& options, const SensorSigma* known = nullptr,
+                                            int threads = 0);
 
 }  // namespace veridyn::aircraft

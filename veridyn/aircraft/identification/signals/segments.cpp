@@ -34,7 +34,7 @@ const KeyTable<SegmentOptions>& SegmentOptions::keys() {
     return [member](const StudyTable& t, const std::string& key, O& o) { o.*member = recording::read_spans(t, key); };
   };
   static const auto table =
-      KeyTable<O>("segments", "Which stretches of a flight are used, and what for (section 7).")
+      KeyTable<O>("segments", "Which stretches of a flight are used, and what for.")
           .number("min_airspeed", &O::min_airspeed_mps, "m/s", kAnyNumber, "below it the aircraft does not fly")
           .otherwise("0.8 of the speed where CL = 1.2 carries the weight")
           .number("min_input", &O::min_input_rad, "rad", kPositive,

@@ -147,11 +147,10 @@ void append(std::vector<PredictedQuantity>& all, const PredictedQuantity& more, 
 
 const KeyTable<ValidationOptions>& ValidationOptions::keys() {
   using O = ValidationOptions;
-  static const auto table =
-      KeyTable<O>("validate", "How the model's predictions are compared with what was flown (section 10).")
-          .number("period", &O::period_s, "s", kPositive,
-                  "the simulation starts again from the measured state this often")
-          .with(&O::open_loop, OpenLoopOptions::keys());
+  static const auto table = KeyTable<O>("validate", "How the model's predictions are compared with what was flown.")
+                                .number("period", &O::period_s, "s", kPositive,
+                                        "the simulation starts again from the measured state this often")
+                                .with(&O::open_loop, OpenLoopOptions::keys());
   return table;
 }
 

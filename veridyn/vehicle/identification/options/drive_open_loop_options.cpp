@@ -45,7 +45,7 @@ const KeyTable<DriveValidateOptions>& DriveValidateOptions::keys() {
   using O = DriveValidateOptions;
   static const auto table = KeyTable<O>("validate", "Where and how an estimate is validated.")
                                 .choice("segments", &O::holdout_only, {{"all", false}, {"holdout", true}},
-                                        "where `veridyn validate` takes an estimate of other data")
+                                        "stretches on which `veridyn validate` tests an estimate from other data")
                                 .with(&O::open_loop, DriveOpenLoopOptions::keys());
   return table;
 }

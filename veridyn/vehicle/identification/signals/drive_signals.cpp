@@ -191,7 +191,7 @@ const KeyTable<DriveSignalOptions>& DriveSignalOptions::keys() {
                   "of the equation-error regressions, which differentiate; output error takes the unfiltered signals")
           .otherwise("2, or a tenth of the rate where that is less")
           .number("steering_ratio", &O::steering_ratio, "1", kPositive,
-                  "hand wheel over road wheels; needed where the log has `steering_wheel`")
+                  "ratio of hand-wheel to road-wheel angle; needed where the log has `steering_wheel`")
           .otherwise("none")
           .number("rolling_radius", &O::rolling_radius, "m", kPositive,
                   "gives the speed by the rear wheels where the log has no `speed`")
@@ -204,7 +204,7 @@ const KeyTable<DriveSignalOptions>& DriveSignalOptions::keys() {
                   "how far the body leans outward per lateral acceleration, 0.0089 for 5 deg per g: a sensor fixed to "
                   "the body then shows (1 + g roll_gradient) times the lateral acceleration, and that is taken off. "
                   "Ignored where `roll` is recorded, of which g sin(roll) is taken off")
-          .number("gravity", &O::gravity, "m/s^2", kPositive, "")
+          .number("gravity", &O::gravity, "m/s^2", kPositive, "acceleration of free fall, where the vehicle drives")
           .other(recording::noise_key("measured above 0.2 of the channel's rate"),
                  [](const StudyTable& t, const std::string& key, O& o) {
                    std::vector<recording::StandardChannel> channels;
