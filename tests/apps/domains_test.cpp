@@ -125,14 +125,14 @@ TEST_F(Domains, AreNamedWhereTheSubjectDoesNotSayWhichItIs) {
     expect_refusal("identify " + file("s.toml", text) + out(), message);
   };
   // Keys and channels that only vehicles have; all that is missing at once.
-  for (const char* text :
-       {"[subject]\nmass = 1500\n[drive]\n", "[subject]\nmass = 1500\n[data.map]\nsteer = \"angle\"\n"})
-    refused(text, "subject: a, b are missing");
-  refused("[subject]\nC_f = 5e4\na = 1.2\n", "subject: mass, b are missing");
+  refused("[subject]\nmass = 1500\n[drive]\n", "subject: a, b, I_z, C_f, C_r, unsprung_mass, ");
+  refused("[subject]\nmass = 1500\n[data]\nfile = \"d.csv\"\n[data.map]\nsteer = \"angle\"\n",
+          "subject: a, b are missing");
+  refused("[subject]\nC_f = 5e4\na = 1.2\n[data]\nfile = \"d.csv\"\n", "subject: mass, b are missing");
   refused("[subject]\nkind = \"vehicel\"\n", "subject.kind: there is no kind 'vehicel' (did you mean 'vehicle'?)");
   refused("[subject]\nmass = 1\n[motion]\n",
           "subject.model: is missing: a study with [motion] is of a musculoskeletal");
-  refused("[subject]\nbuiltin = \"saloon\"\n", "data: is missing: the study names no recording of a drive");
+  refused("[subject]\nbuiltin = \"saloon\"\n", "data: is missing: the study names no recording, and no [drive]");
   // A table of another domain is still an unknown key.
   refused(
       "[subject]\nkind = \"vehicle\"\nbuiltin = \"reference\"\n[drive]\nmanoeuvre = \"step steer\"\n"

@@ -434,7 +434,7 @@ TEST_F(LiveProgramTest, RefusesInOneLine) {
   expect_refusal("cue" + out(), "takes a study, or --replay and a recorded run");
   expect_refusal("cue " + study_ + " --replay x.vlr" + out(), "either, not both");
   expect_refusal("cue --replay " + file("no.vlr", "nothing") + out(), "is no recording of a live run");
-  expect_refusal("cue " + study_ + " --live --set live.rate=5" + out(), "live.rate: = 5 must be from 20 to 4000 Hz");
+  expect_refusal("cue " + study_ + " --live --set live.rate=5" + out(), "live.rate: = 5 Hz must be from 20 to 4000 Hz");
   expect_refusal("cue " + study_ + " --live --set live.telemetry=8.8.8.8:4123" + out(),
                  "Cannot assign requested address");
   expect_refusal("cue " + study_ + " --live --set live.ratte=5" + out(), "did you mean 'rate'");

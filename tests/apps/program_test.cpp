@@ -65,9 +65,9 @@ TEST_F(Program, ShowsItsCommandsAndNoOthers) {
   EXPECT_EQ(help.exit_code, 0);
   for (const char* command :
        {"demo", "init", "inspect", "simulate", "reconstruct", "identify", "sensitivity", "validate", "export", "track",
-        "reproduce", "cue", "rig", "camera", "serve", "regress", "compare", "checks"})
+        "reproduce", "cue", "rig", "camera", "serve", "regress", "compare", "checks", "keys"})
     EXPECT_THAT(help.text, HasSubstr("\n  " + std::string(command) + " "));
-  EXPECT_EQ(std::ranges::count(help.text.substr(help.text.find("Subcommands:")), '\n'), 19 + 2)
+  EXPECT_EQ(std::ranges::count(help.text.substr(help.text.find("Subcommands:")), '\n'), 20 + 2)
       << "with their heading and an empty line";
 }
 

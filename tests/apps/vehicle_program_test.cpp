@@ -249,12 +249,12 @@ TEST_F(VehicleProgram, RefusesWhatNoVehicleCanBeOrDo) {
   const auto refused = [&](const std::string& set, const std::string& message) {
     expect_refusal("simulate " + study("step_steer") + " --set " + set + out(), message);
   };
-  refused("drive.speed=0", "drive.speed: is 0 m/s; must be > 0");
+  refused("drive.speed=0", "drive.speed: = 0 must be > 0");
   refused("drive.speed=nan", "drive.speed: is nan");
   refused("'drive.speed=\"20 kg\"'", "unit 'kg' is a mass");
   refused("subject.track=0", "track_f is 0 m; must be > 0");
   refused("subject.C_f=-100", "C_f is -100 N/rad; must be > 0");
-  refused("'drive.amplitude=\"95 deg\"'", "must be within 90 deg");
+  refused("'drive.amplitude=\"95 deg\"'", "must be between -90 and 90 deg");
   refused("drive.manoeuvre=stepsteer", "did you mean 'step steer'");
   refused("drive.step=0.05 --set drive.output_step=0.05", "step");
   refused("drive.amplitud=1", "did you mean 'amplitude'");

@@ -73,7 +73,7 @@ TEST(MuscleStudy, ErrorsNameFileLineKeyAndTheNearestValidName) {
                    {kArm + "[motion]\nduration = 0\n", "s.toml:4: motion.duration", "must be above 0"},
                    {kArm + "[motion]\naccuracy = 1\n", "s.toml:4: motion.accuracy", "1e-13 to 0.1"},
                    {kArm + "[motion]\nfile = \"x.mot\"\n", "s.toml:4: motion.file", "no use for"},
-                   {kFollow + "interpolation = \"hold\"\n" + ramp, "s.toml:6: motion.interpolation", "has no meaning"},
+                   {kFollow + "interpolation = \"hold\"\n" + ramp, "s.toml:6: motion.interpolation", "there is none"},
                    {kFollow + ramp + "[motion.control]\nwindow = 1\n", "s.toml:11: motion.control.window",
                     "longer than the motion"},
                    {kFollow + ramp + "[motion.control]\nmin_control = 1\n", "s.toml:11", "at least 0 and below 1"},

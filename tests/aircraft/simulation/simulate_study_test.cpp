@@ -37,7 +37,7 @@ TEST(SimulateStudy, ReadsEveryKeyAndRefusesWrongOnes) {
                 "\"1 deg/s\"\nbias = [0.1, 0, 0]\nrate = 50\ndelay = 0.02\n[sensors.pitot]\nenabled = false\n"),
             "no error");
   EXPECT_THAT(simulate_message(base + "[flight]\nduration = 0\n"),
-              HasSubstr("flight.duration: = 0 must be above 0 and at most 86400"));
+              HasSubstr("flight.duration: = 0 s must be above 0 and at most 86400 s"));
   EXPECT_THAT(simulate_message(base + "[flight]\nstep = 0.1\n"), HasSubstr("at most 0.02"));
   EXPECT_THAT(simulate_message(base + "[flight]\nwind = [1, 2]\n"), HasSubstr("has 2 numbers, needs 3"));
   EXPECT_THAT(simulate_message(base + "[flight]\naltitude = 10\nground = 10\n"),

@@ -44,7 +44,7 @@ TEST(CameraDevice, OptionsAreWhatIsAskedOfIt) {
   EXPECT_EQ(read("").width, 0);
   EXPECT_THAT(why([] { (void)read("width = 1280\n"); }), HasSubstr("width: needs the other one"));
   EXPECT_THAT(why([] { (void)read("height = -1\nwidth = 4\n"); }), HasSubstr("height: = -1 must be from 0"));
-  EXPECT_THAT(why([] { (void)read("rate = -5\n"); }), HasSubstr("rate: = -5 must be from 0 to 1000"));
+  EXPECT_THAT(why([] { (void)read("rate = -5\n"); }), HasSubstr("rate: = -5 Hz must be from 0 to 1000 Hz"));
   EXPECT_THAT(why([] { (void)read("format = \"JPEG2\"\n"); }), HasSubstr("must be four letters"));
 }
 

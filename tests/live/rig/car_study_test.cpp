@@ -47,7 +47,7 @@ TEST(CarStudy, RefusesInOneLineWithItsPlace) {
   EXPECT_THAT(car_refusal("[live.driver]\n"), HasSubstr("names 0 of wheel, events and table; takes one"));
   EXPECT_THAT(car_refusal("[live.driver]\nwheel = '/dev/null'\n"), HasSubstr("live.driver.calibration: is missing"));
   EXPECT_THAT(car_refusal("[live.driver]\ntable = 'a.csv'\n[live.car]\nforce = '2000 N'\n"),
-              HasSubstr("live.car.force: = 2000 must be from 0.1 to 1600 N"));
+              HasSubstr("live.car.force: = 2000 N must be from 0.1 to 1600 N"));
   EXPECT_THAT(car_refusal("[live.driver]\ntable = 'a.csv'\n[live.car]\nbaud = 12\n"),
               HasSubstr("live.car.baud: = 12 must be from 1200"));
   EXPECT_THAT(car_refusal("[live.driver]\ntable = 'a.csv'\n[live.car]\nsensor = [1, 2]\n"),

@@ -73,8 +73,8 @@ TEST(LiveStudy, ARecordingHoldsThePlatformOfAFileByItsNumbers) {
 TEST(LiveStudy, ShowsDefaultsThatStudiesTake) { veridyn::test::expect_defaults_read_back(study_keys()); }
 
 TEST(LiveStudy, RefusesInOneLineWithItsPlace) {
-  EXPECT_THAT(refusal("rate = '10 Hz'\n"), HasSubstr("rig.toml:8: live.rate: = 10 must be from 20 to 4000 Hz"));
-  EXPECT_THAT(refusal("delay = '2 s'\n"), HasSubstr("live.delay: = 2 must be from 0 to 0.5"));
+  EXPECT_THAT(refusal("rate = '10 Hz'\n"), HasSubstr("rig.toml:8: live.rate: = 10 Hz must be from 20 to 4000 Hz"));
+  EXPECT_THAT(refusal("delay = '2 s'\n"), HasSubstr("live.delay: = 2 s must be from 0 to 0.5 s"));
   EXPECT_THAT(refusal("packet = 'outgauge'\n"),
               HasSubstr("= 'outgauge' is no known packet with a motion (any, outsim,"));
   EXPECT_THAT(refusal("signs = 'never'\n"), HasSubstr("rig.toml:8"));

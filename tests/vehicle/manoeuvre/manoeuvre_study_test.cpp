@@ -94,7 +94,7 @@ TEST(Manoeuvre, RefusesWhatNobodyCanDriveWithThePlace) {
   EXPECT_EQ(why([] { (void)read("manoeuvre = \"step ster\""); }),
             "study.toml:2: drive.manoeuvre: no manoeuvre is called 'step ster' (did you mean 'step steer'?)");
   EXPECT_EQ(why([] { (void)read("manoeuvre = \"sine\"\namplitude = \"95 deg\""); }),
-            "study.toml:3: drive.amplitude: steer is 95 deg; must be within 90 deg");
+            "study.toml:3: drive.amplitude: = 95 deg must be between -90 and 90 deg");
   EXPECT_EQ(why([] { (void)read("manoeuvre = \"sweep\"\nlow = 2\nhigh = 1"); }),
             "study.toml:4: drive.high: high is 1 Hz; must be > low");
   ManoeuvreContext standing;
@@ -109,7 +109,7 @@ TEST(Manoeuvre, RefusesWhatNobodyCanDriveWithThePlace) {
       why([] { (void)read("manoeuvre = \"braking in a turn\""); }).find("brakes, which needs longitudinal = true"),
       std::string::npos);
   EXPECT_EQ(why([] { (void)read("manoeuvre = \"slalom\"\ncones = 0"); }),
-            "study.toml:3: drive.cones: cones is 0; must be 1 to 1000");
+            "study.toml:3: drive.cones: = 0 must be from 1 to 1000");
   EXPECT_EQ(why([] { (void)read("manoeuvre = \"ramp steer\"\nhold = -1"); }),
             "study.toml:3: drive.hold: hold is -1 s; must be >= 0");
   EXPECT_NE(why([] { (void)read("manoeuvre = \"follow path\""); }).find("needs a file or the radius"),

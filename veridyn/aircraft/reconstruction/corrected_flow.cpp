@@ -53,6 +53,7 @@ AirData<double> corrected(const FlowSensors& sensors, const AtVane& at, std::siz
   // |s direction - arm| = V
   const double along = direction.dot(arm);
   const double s = along + std::sqrt(V * V - arm.squaredNorm() + along * along);
+  if (!std::isfinite(s)) return {.Va = kNaN, .alpha = kNaN, .beta = kNaN};
   return air_data<double>(Eigen::Vector3d(s * direction - arm));
 }
 

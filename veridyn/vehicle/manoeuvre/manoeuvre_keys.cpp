@@ -136,7 +136,7 @@ const KeyTable<ConesKeys>& ConesKeys::slalom_keys() {
   using K = ConesKeys;
   static const auto table = between_cones(
       table_of<K>("\"slalom\"")
-          .count("cones", &K::cones, 1, 10000, "how many, in a line")
+          .count("cones", &K::cones, 1, 1000, "how many, in a line")
           .number("spacing", &K::spacing, "m", kPositive, "from cone to cone")
           .number("clearance", &K::clearance, "m", kAnyNumber, "which the path leaves to the flank of the body"));
   return table;
