@@ -383,14 +383,14 @@ class KeyTable {
   }
 
   /// Of the key named last: its default in words, where it depends on other things.
-  KeyTable& otherwise(std::string words) {
-    entries_.back().key.otherwise = std::move(words);
+  KeyTable& otherwise(const std::string& words) {
+    entries_.back().key.otherwise = words;
     entries_.back().key.in_words = true;
     return *this;
   }
   /// Of the key named last: what it was called in earlier versions.
-  KeyTable& was(std::string old_name) {
-    entries_.back().old_name = std::move(old_name);
+  KeyTable& was(const std::string& old_name) {
+    entries_.back().old_name = old_name;
     return *this;
   }
   /// Of the key named last: a study must have it.

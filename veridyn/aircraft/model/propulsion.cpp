@@ -78,8 +78,11 @@ void read_kind(const StudyTable& table, const std::string& key, Propulsion& p) {
   std::vector<std::string> names;
   for (const PropulsionKind kind : kKinds) names.emplace_back(kind_name(kind));
   const std::string chosen = table.choice_or(key, names, "");
-  for (const PropulsionKind kind : kKinds)
-    if (kind_name(kind) == chosen && kind != p.kind) p = Propulsion{.kind = kind};
+  for (const PropulsionKind kind : kKinds) {
+    if (kind_name(kind) != chosen || kind == p.kind) continue;
+    p = Propulsion();
+    p.kind = kind;
+  }
 }
 
 void read_polynomial(const StudyTable& table, const std::string& key, Propulsion& p) {
