@@ -32,9 +32,8 @@ struct CorrectedFlow {
 };
 
 /// The recording with `alpha` and `beta` of the centre of gravity at the stamps of the vanes: biases and scale taken
-/// off, and the velocity omega x r that rotation adds at the vanes. Where one of the two vanes is
-/// not there, or has no number, the reconstruction's angle stands for it; where rates or airspeed are missing there is
-/// no angle.
+/// off, and the velocity omega x r that rotation adds at the vanes. The reconstruction's angle stands in for a vane
+/// that is missing or has no value. Without rates or airspeed there is no angle.
 /// @param smoothed with `airspeed` [m/s], and `alpha`, `beta` [rad] where they are known
 [[nodiscard]] CorrectedFlow with_corrected_flow(recording::MappedRecording mapped, const FlowSensors& sensors,
                                                 const Recording& smoothed);

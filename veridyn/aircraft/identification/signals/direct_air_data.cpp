@@ -65,7 +65,9 @@ Recording direct_air_data(const Recording& recording, const ReconstructOptions& 
   out.set(make_channel("sigma_airspeed", "m/s", time, std::move(sigma)));
   out.set(make_channel("air_density", "kg/m^3", time, std::move(rho)));
   // Of the centre of gravity, as a filter's are.
-  const CorrectedFlow flow = with_corrected_flow({.recording = recording}, flow_sensors(reconstruct, out), out);
+  const FlowSensors vanes = flow_sensors(reconstruct, out);
+  if (vanes.exact()) return out;
+  const CorrectedFlow flow = with_corrected_flow({.recording = recording}, vanes, out);
   for (const char* name : {"alpha", "beta"})
     if (out.has(name)) out.set(flow.mapped.recording.at(name));
   return out;

@@ -382,8 +382,10 @@ FlightSignals prepare_signals(const MappedRecording& mapped, const Recording& sm
                               const Subject& subject, const SignalOptions& options, const SensorSigma* known,
                               int threads) {
   const CommonGrid common = common_grid(mapped, options);
-  const CorrectedFlow corrected = with_corrected_flow(mapped, vanes, smoothed);
-  const GriddedChannels channels(corrected.mapped, common, options, known);
+  // A recording of an hour is not copied where nothing is corrected.
+  CorrectedFlow corrected;
+  if (!vanes.exact()) corrected = with_corrected_flow(mapped, vanes, smoothed);
+  const GriddedChannels channels(vanes.exact() ? mapped : corrected.mapped, common, options, known);
   const numerics::UniformGrid& grid = common.grid;
   FlightSignals flight;
   flight.grid = grid;
