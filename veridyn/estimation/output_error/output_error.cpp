@@ -17,6 +17,7 @@
 #include "veridyn/estimation/output_error/solver_views.hpp"
 #include "veridyn/estimation/output_error/undetermined_directions.hpp"
 #include "veridyn/numerics/linear_algebra/singular_values.hpp"
+#include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::estimation {
 namespace {
@@ -133,7 +134,7 @@ class Estimation {
         if (std::isfinite(p.low)) ceres_problem.SetParameterLowerBound(block, at, p.low);
         if (std::isfinite(p.high)) ceres_problem.SetParameterUpperBound(block, at, p.high);
         start(at) = p.start;
-        root(at) = 1.0 / p.prior_sigma;
+        root(at) = problem_.prior_root(p);
       }
       if (root.size() > 0 && root.maxCoeff() > 0.0)
         ceres_problem.AddResidualBlock(new PriorCost(start, root), nullptr, block);
@@ -200,7 +201,7 @@ class Estimation {
     const auto parameters = model.parameters();
     const auto n = static_cast<Index>(parameters.size());
     result_.theta = problem_.full_shared();
-    result_.covariance = result_.covariance_white = Eigen::MatrixXd::Zero(n, n);
+    result_.covariance = result_.covariance_by_model = result_.covariance_white = Eigen::MatrixXd::Zero(n, n);
     result_.learned_share = Eigen::VectorXd::Ones(n);
     result_.noise_covariance = problem_.noise();
     result_.parameters.resize(parameters.size());
@@ -252,10 +253,10 @@ class Estimation {
     const auto unknowns = problem_.shared_unknowns();
     RowMatrix root = problem_.shared_root();
     for (std::size_t i = 0; i < unknowns.size(); ++i) {
-      const double sigma = unknowns[i]->prior_sigma;
-      if (!std::isfinite(sigma)) continue;
+      const double of_prior = problem_.prior_root(*unknowns[i]);
+      if (of_prior == 0.0) continue;
       root.conservativeResize(root.rows() + 1, Eigen::NoChange);
-      root.row(root.rows() - 1) = Eigen::RowVectorXd::Unit(unknowns.size(), static_cast<Index>(i)) / sigma;
+      root.row(root.rows() - 1) = Eigen::RowVectorXd::Unit(unknowns.size(), static_cast<Index>(i)) * of_prior;
     }
     return root;
   }
@@ -311,15 +312,26 @@ class Estimation {
   Eigen::MatrixXd corrected_for_autocorrelation(const Eigen::MatrixXd& white) {
     const ResidualSpectrum spectrum = residual_spectrum(problem_.whitened_residuals(), options_.max_lag);
     Eigen::MatrixXd filling = problem_.spectral_filling(spectrum) / spectrum.kept;
-    // The prior's own error is white: its information enters as it is.
+    const RowMatrix root = problem_.shared_root();
+    std::vector<double> ratios;
+    for (Index i = 0; i < filling.rows(); ++i)
+      if (const double information = root.col(i).squaredNorm(); information > 0.0)
+        ratios.push_back(filling(i, i) / information);
+    if (!ratios.empty()) result_.autocorrelation = std::max(1.0, numerics::median(ratios));
+    // The prior's own error is one of them.
+    const double weight = problem_.samples_per_independent_one();
     const auto unknowns = problem_.shared_unknowns();
-    for (Index i = 0; i < filling.rows(); ++i) {
-      const double sigma = unknowns[i]->prior_sigma;
-      if (std::isfinite(sigma)) filling(i, i) += 1.0 / (sigma * sigma);
-    }
+    for (Index i = 0; i < filling.rows(); ++i)
+      filling(i, i) += weight * std::pow(problem_.prior_root(*unknowns[i]), 2);
     result_.degrees_of_freedom = std::min(result_.degrees_of_freedom, spectrum.degrees_of_freedom);
     result_.lag_window = spectrum.window;
     return white * filling * white;
+  }
+
+  /// What the model lacks is as large along the parameters, where no residual shows it, as in any direction beside.
+  Eigen::MatrixXd covariance_by_model(const Eigen::MatrixXd& white) const {
+    const RowMatrix spread = problem_.shared_root() * white;
+    return (problem_.samples_per_independent_one() - 1.0) * spread.transpose() * spread;
   }
 
   void error_bars() {
@@ -339,6 +351,7 @@ class Estimation {
     result_.degrees_of_freedom = freedom;
     const bool autocorrelated = options_.covariance == CovarianceKind::kAutocorrelated;
     const Eigen::MatrixXd chosen = autocorrelated ? corrected_for_autocorrelation(white) : white;
+    const Eigen::MatrixXd by_model = covariance_by_model(white);
     for (Index i = 0; i < n; ++i) {
       for (Index j = 0; j < n; ++j) {
         const Index a = free[i], b = free[j];
@@ -346,13 +359,14 @@ class Estimation {
         const double otherwise = i == j ? kInfinity : 0.0;
         result_.covariance(a, b) = known ? (autocorrelated ? inflation : white_inflation) * chosen(i, j) : otherwise;
         result_.covariance_white(a, b) = known ? white_inflation * white(i, j) : otherwise;
+        if (known) result_.covariance_by_model(a, b) = by_model(i, j);
       }
     }
     const auto unknowns = problem_.shared_unknowns();
     for (Index i = 0; i < n; ++i) {
       const Index a = free[i];
       Parameter& p = result_.parameters[a];
-      p.sigma = std::sqrt(std::max(0.0, result_.covariance(a, a)));
+      p.sigma = std::sqrt(std::max(0.0, result_.covariance(a, a) + result_.covariance_by_model(a, a)));
       p.sigma_white = std::sqrt(std::max(0.0, result_.covariance_white(a, a)));
       set_interval(p, result_.degrees_of_freedom);
       p.unexcited_share = std::min(1.0, share(i));

@@ -41,6 +41,8 @@ struct OutputErrorOptions {
   /// Error bars: inverse information (kWhite: Cramer-Rao, too small when the model is incomplete) or corrected for the
   /// autocorrelation of the residuals (kAutocorrelated, the default).
   CovarianceKind covariance = CovarianceKind::kAutocorrelated;
+  /// Take what is coloured in the residual for an error of the model: see `output_error`.
+  bool model_error = false;
   bool free_initial_conditions = true;          ///< estimate the initial conditions of every segment
   std::vector<std::string> output_biases = {};  ///< outputs with a constant bias per segment, estimated
   double significance = 0.05;                   ///< two-sided level of the t-tests
@@ -100,6 +102,7 @@ struct OutputErrorEstimate {
   std::vector<Parameter> parameters;  ///< those that all segments share, in the model's order
   Eigen::VectorXd theta;              ///< their values
   Eigen::MatrixXd covariance;         ///< of the chosen kind; 0 for fixed, infinite variance for not identifiable ones
+  Eigen::MatrixXd covariance_by_model;  ///< what an error of the model adds, with `model_error`; 0 without
   Eigen::MatrixXd covariance_white;   ///< inverse information (Cramer-Rao bound)
   double degrees_of_freedom = 0.0;    ///< of the t-tests
   Eigen::Index lag_window = 0;        ///< lags at which residual correlation counts in full [samples]
@@ -109,6 +112,7 @@ struct OutputErrorEstimate {
   std::vector<RowMatrix> predicted;       ///< per segment, samples x outputs, bias included
   std::vector<Direction> unidentifiable;  ///< combinations that the data (and priors) do not determine
   std::vector<Direction> held;    ///< of these, along which `hold_undetermined` kept the parameters at their start
+  double autocorrelation = 1.0;   ///< by how much it widens what the data say: the median over the parameters
   double condition_number = 0.0;  ///< of the information's root over the shared parameters, columns of unit length
   /// Share of each parameter's variance before the data that the data removed: 1 - (sigma/prior_sigma)^2; 1 without a
   /// prior.
@@ -132,6 +136,8 @@ struct OutputErrorEstimate {
     return usable() || (termination == OutputErrorTermination::kInterrupted && accepted_steps > 0);
   }
   [[nodiscard]] const Parameter* find(std::string_view name) const;
+  /// Of noise and of the model's error.
+  [[nodiscard]] Eigen::MatrixXd total_covariance() const { return covariance + covariance_by_model; }
 };
 
 /// Output-error maximum likelihood (Klein & Morelli 2006, chapter 6): z_k = y_k(theta) + nu_k, nu ~ N(0, R), minimises

@@ -87,9 +87,39 @@ double OutputErrorProblem::update_noise() {
   }
   const Eigen::VectorXd before = noise_.diagonal().cwiseSqrt();
   set_noise(updated);
+  if (options_.model_error) update_discount();
   double change = 0.0;
   for (Index j = 0; j < outputs_; ++j) change = std::max(change, std::abs(std::sqrt(noise_(j, j)) / before(j) - 1.0));
   return change;
+}
+
+double OutputErrorProblem::prior_root(const ModelParameter& unknown) const {
+  return std::sqrt(discount_) / unknown.prior_sigma;
+}
+
+void OutputErrorProblem::update_discount() {
+  constexpr Index kLags = 5;
+  const std::vector<RowMatrix> residuals = whitened_residuals();
+  double energy = 0.0;
+  for (Index j = 0; j < outputs_; ++j) {
+    double products = 0.0, pairs = 0.0, power = 0.0, count = 0.0;
+    for (const RowMatrix& r : residuals) {
+      for (Index k = 0; k < r.rows(); ++k) {
+        if (!std::isfinite(r(k, j))) continue;
+        power += r(k, j) * r(k, j);
+        count += 1.0;
+        for (Index lag = 1; lag <= std::min(kLags, k); ++lag) {
+          if (!std::isfinite(r(k - lag, j))) continue;
+          products += r(k, j) * r(k - lag, j);
+          pairs += 1.0;
+        }
+      }
+    }
+    if (!(power > 0.0) || !(pairs > 0.0)) continue;
+    const double coloured = products / pairs / (power / count);
+    energy += count * std::max(0.0, coloured - 2.0 / std::sqrt(pairs));
+  }
+  discount_ = 1.0 + energy / static_cast<double>(std::max<Index>(1, shared_.size()));
 }
 
 double OutputErrorProblem::negative_log_likelihood() const {

@@ -322,7 +322,7 @@ std::vector<int> OutputErrorProblem::pressed_on_bounds() const {
   for (Index i = 0; i < shared_.size(); ++i) {
     const ModelParameter& p = *unknowns[i];
     if (!is_at_bound(shared_(i), p)) continue;
-    double slope = std::isfinite(p.prior_sigma) ? (shared_(i) - p.start) / (p.prior_sigma * p.prior_sigma) : 0.0;
+    double slope = std::pow(prior_root(p), 2) * (shared_(i) - p.start);
     for (const Segment& s : segments_) {
       const RowMatrix& triangle = s.triangle.matrix;
       slope += triangle.col(s.local.size() + i).dot(triangle.col(triangle.cols() - 1));

@@ -59,6 +59,11 @@ class OutputErrorProblem {
   /// R from the residuals; returns the largest relative change of a standard deviation.
   double update_noise();
   [[nodiscard]] const Eigen::MatrixXd& noise() const { return noise_; }
+  /// How many samples say what one would if the model were right (`OutputErrorOptions::model_error`): priors count by
+  /// it. 1 at least.
+  [[nodiscard]] double samples_per_independent_one() const { return discount_; }
+  /// 1/sigma of an unknown's prior against the samples; 0 without one.
+  [[nodiscard]] double prior_root(const ModelParameter& unknown) const;
 
   /// Whether a shared unknown is at a bound.
   [[nodiscard]] bool reaches_bounds() const;
@@ -109,6 +114,7 @@ class OutputErrorProblem {
   /// R^-1/2 times the rows of every sample, in place; missing ones become zero.
   void whiten(const RowMatrix& residual, RowMatrix& rows) const;
   void set_noise(const Eigen::MatrixXd& noise);
+  void update_discount();
 
   const ParametricModel& model_;
   const std::vector<RowMatrix>& measured_;
@@ -122,6 +128,7 @@ class OutputErrorProblem {
   std::vector<ModelParameter> bias_parameters_;
   std::vector<Segment> segments_;
   bool keeps_ = false;  // simulations with derivatives, for another R
+  double discount_ = 1.0;
   Eigen::MatrixXd noise_;
   Eigen::MatrixXd whitener_;  // inverse of the Cholesky factor of R
   Eigen::VectorXd noise_floor_;

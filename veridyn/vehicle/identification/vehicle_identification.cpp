@@ -9,6 +9,7 @@
 #include "veridyn/vehicle/identification/evidence/drive_evidence.hpp"
 #include "veridyn/vehicle/identification/evidence/model_error.hpp"
 #include "veridyn/vehicle/identification/evidence/vehicle_plausibility.hpp"
+#include "veridyn/vehicle/identification/fit/corrected_signals.hpp"
 #include "veridyn/vehicle/identification/fit/estimated_vehicle.hpp"
 #include "veridyn/vehicle/identification/fit/vehicle_estimates.hpp"
 #include "veridyn/vehicle/identification/fit/vehicle_profiles.hpp"
@@ -159,10 +160,15 @@ VehicleIdentification identify_parameters(const VehicleProblem& problem, Progres
     progress.stage("equation error");
     equation_error = estimate_by_equation_error(problem);
   }
-  const EquationErrorEstimates* const by_regression = equation_error ? &*equation_error : nullptr;
   StructureLadder ladder;
   if (problem.options.output_error && !progress.interrupted())
-    ladder = climb_structures(problem, by_regression, progress);
+    ladder = climb_structures(problem, equation_error ? &*equation_error : nullptr, progress);
+  const bool corrects = problem.options.method.value_or(VehicleMethod::kOutputError) == VehicleMethod::kOutputError;
+  if (equation_error && corrects && !ladder.empty() && ladder.fit.raw.usable() && !progress.interrupted()) {
+    const DriveSignals corrected = corrected_signals(problem.signals, ladder.fit.raw.theta);
+    equation_error = estimate_by_equation_error({corrected, problem.segments, problem.start, problem.signal_options,
+                                                 problem.options, problem.recording});
+  }
   VehicleIdentifyOptions options = problem.options;
   if (!ladder.empty()) options.model = ladder.model;
   VehicleIdentification out = identify_structure(

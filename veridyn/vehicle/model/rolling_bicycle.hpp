@@ -94,6 +94,8 @@ struct RollingBicycle {
   Scalar relaxation_length{0.3};  ///< with six states; > 0 [m]
   LoadTransfer<Scalar> load_transfer = {};
   AxleLoad<Scalar> axle_load = {};
+  std::array<Scalar, 2> roll_steer{};  ///< slip angle per roll, front and rear [rad/rad]
+  Scalar trail{0.0};                   ///< of the side forces behind the middle of the tyres' contact [m]
 
   template <int kStates>
   [[nodiscard]] RollingBicycleRates<Scalar, kStates> rates(const Eigen::Matrix<Scalar, kStates, 1>& x,
@@ -103,6 +105,8 @@ struct RollingBicycle {
     static_assert(kStates == 2 || kStates == 4 || kStates == 6);
     RollingBicycleRates<Scalar, kStates> out;
     std::array<Scalar, 2> slip = bicycle.slip_angles(contact_velocity(x), x(1), steer, u);
+    if constexpr (kStates > 2)
+      for (std::size_t axle = 0; axle < 2; ++axle) slip[axle] += roll_steer[axle] * x(2);
     if constexpr (kStates > 4) {
       const Scalar per_time = u / relaxation_length;
       out.derivative(4) = per_time * (slip[0] - x(4));
@@ -115,7 +119,8 @@ struct RollingBicycle {
     out.lateral_acceleration = plane.lateral_acceleration;
     out.derivative(0) = plane.dv;
     if (conditions.banked) out.derivative(0) -= bicycle.gravity * sin(conditions.bank);
-    out.derivative(1) = plane.dr;
+    const VehicleParameters<Scalar>& p = bicycle.parameters;
+    out.derivative(1) = plane.dr - trail * p.mass * plane.lateral_acceleration / p.I_z;
     if constexpr (kStates > 2) {
       out.derivative(2) = x(3);
       out.derivative(3) = roll.frequency * (roll.frequency * (roll.gradient * plane.lateral_acceleration - x(2)) -

@@ -114,14 +114,7 @@ Evidence row_by_signals(const recording::DelayReport& report, bool misled) {
 Evidence steering_row(const recording::DelayReport& by_signals, const KnownByModel& known) {
   if (!known.delay || !std::isfinite(known.delay->sigma_s))
     return row_by_signals(by_signals, known.changed || known.roll_gradient.value_or(0.0) != 0.0);
-  Evidence row = row_of(Check::kSteeringDelay, "accel_y", known.delay->value_s, known.delay->sigma_s);
-  row.with("unknown", std::string(kDriveUnknownNames[known.delay->channel]));
-  if (known.delay->channel != DriveUnknown::kAccelYDelay) return of_steering(std::move(row));
-  // No sensor is early: the others are late then.
-  if (!(known.delay->value_s < 0.0))
-    return with_late(std::move(row), "accel_y", known.delay->value_s, "steer and yaw_rate");
-  row.about = "steer, yaw_rate";
-  return with_late(std::move(row), "steer and yaw_rate", -known.delay->value_s, "accel_y");
+  return of_steering(row_of(Check::kSteeringDelay, "", known.delay->value_s, known.delay->sigma_s));
 }
 
 bool contradicts_itself(const DriveFindings& findings) {

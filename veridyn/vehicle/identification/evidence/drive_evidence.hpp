@@ -34,9 +34,8 @@ struct DriveFindings {
 /// Whether it contradicts itself, whatever a model would say, in what parameters rest on.
 [[nodiscard]] bool contradicts_itself(const DriveFindings& findings);
 
-/// A delay by which the identified model explains the drive best.
+/// How late the identified vehicle answers the recorded steering, which its model corrects.
 struct DelayByModel {
-  DriveUnknown channel = DriveUnknown::kSteerDelay;  ///< the steering's, the yaw rate's or accel_y's
   double value_s = 0.0, sigma_s = 0.0;
 };
 
@@ -45,8 +44,7 @@ struct KnownByModel {
   /// How far the body leans. The structure with roll is taken only where it explains the drive better than a wrong
   /// scale of the accelerometer does.
   std::optional<double> roll_gradient = {};
-  /// Where the model is left free to say so. What compares signals alone takes a body's lean, or noise of slow
-  /// steering, for a delay.
+  /// What compares signals alone takes a body's lean, or noise of slow steering, for a delay.
   std::optional<DelayByModel> delay = {};
   bool changed = false;  ///< the vehicle did not stay what it was, so that signals alone show no delay
 };

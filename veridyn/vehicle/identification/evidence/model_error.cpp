@@ -42,15 +42,6 @@ bool is_noise_free(const DriveSignals& signals, std::span<const TimeSpan> spans)
       });
 }
 
-double variance_inflation(const estimation::OutputErrorEstimate& fit) {
-  std::vector<double> ratios;
-  for (const estimation::Parameter& p : fit.parameters) {
-    const double ratio = std::pow(p.sigma / p.sigma_white, 2);
-    if (p.sigma > 0.0 && std::isfinite(ratio)) ratios.push_back(ratio);
-  }
-  return ratios.empty() ? 1.0 : std::max(1.0, numerics::median(ratios));
-}
-
 double model_error_factor(const estimation::OutputErrorEstimate& fit, const DriveSignals& signals,
                           std::span<const TimeSpan> spans) {
   double samples = 0.0;
@@ -58,7 +49,7 @@ double model_error_factor(const estimation::OutputErrorEstimate& fit, const Driv
     const auto [first, last] = signals.indices(span);
     samples += static_cast<double>(last - first);
   }
-  return std::max(1.0, samples / variance_inflation(fit));
+  return std::max(1.0, samples / fit.autocorrelation);
 }
 
 VehicleEstimate with_model_error(VehicleEstimate estimate, double factor, double significance) {

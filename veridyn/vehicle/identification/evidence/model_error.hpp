@@ -13,10 +13,6 @@ namespace veridyn::vehicle {
 /// not make it smaller.
 [[nodiscard]] bool is_noise_free(const DriveSignals& signals, std::span<const TimeSpan> spans);
 
-/// By how much the autocorrelation of the residual makes variances larger than those of white noise: the median over
-/// the parameters, 1 at least.
-[[nodiscard]] double variance_inflation(const estimation::OutputErrorEstimate& fit);
-
 /// By how much variances grow where the residual is one error from the first sample to the last, and aligned with what
 /// a parameter does: sqrt(samples) times the standard error of white noise of its rms (Cauchy-Schwarz).
 [[nodiscard]] double model_error_factor(const estimation::OutputErrorEstimate& fit, const DriveSignals& signals,

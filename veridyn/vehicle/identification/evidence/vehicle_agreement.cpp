@@ -41,6 +41,7 @@ std::optional<PartsAgreement> by_output_error(const VehicleProblem& problem, con
   // From where the other part ended: if both are one vehicle, few steps of Gauss-Newton are as good as all (Le Cam's
   // one-step estimator), and if they are not, few show it.
   options.noise_start = here.raw.noise_covariance.diagonal().cwiseSqrt();
+  options.model_error = true;
   options.max_relaxations = 1;
   options.max_steps = 3;
   options.max_lag =
@@ -58,7 +59,7 @@ std::optional<PartsAgreement> by_output_error(const VehicleProblem& problem, con
     if (determined(here.raw) && determined(there)) both.push_back(i);
   }
   if (both.empty()) return std::nullopt;
-  const Eigen::MatrixXd covariance = model_error * (here.raw.covariance + there.covariance);
+  const Eigen::MatrixXd covariance = model_error * (here.raw.total_covariance() + there.total_covariance());
   return compared(here.raw.theta(both), there.theta(both), covariance(both, both));
 }
 

@@ -164,10 +164,12 @@ bool DriveParametricModel::delays_outputs(double yaw_rate_delay, double accel_de
 
 template <int kStates, typename Scalar>
 Scalar DriveParametricModel::true_output(DriveSignal signal, const Eigen::Matrix<Scalar, kStates, 1>& state,
-                                         const RollingBicycleRates<Scalar, kStates>& rates) const {
-  const auto [x, y, z] = accel_position_;
+                                         const RollingBicycleRates<Scalar, kStates>& rates,
+                                         const Parameters<Scalar>& theta) const {
+  const auto [given_x, y, z] = accel_position_;
   switch (signal) {
     case DriveSignal::kAccelY: {
+      const Scalar x = given_x + theta(static_cast<Eigen::Index>(DriveUnknown::kAccelPlace));
       Scalar shown = rates.lateral_acceleration + x * rates.derivative(1) - y * state(1) * state(1);
       if constexpr (kStates > 2) {
         shown -= z * rates.derivative(3);
@@ -279,7 +281,7 @@ bool DriveParametricModel::drive(const Segment& segment, const RollingBicycle<Sc
       if (i == 0) {
         for (std::size_t j = 0; j < compared_.size(); ++j) {
           const auto column = signed_index(j);
-          Scalar true_value = true_output<kStates>(compared_[j].signal, x, k1);
+          Scalar true_value = true_output<kStates>(compared_[j].signal, x, k1, theta);
           if (compared_[j].signal == DriveSignal::kLateralVelocity)
             true_value += unknown(DriveUnknown::kSideslipBias) * now.u -
                           unknown(DriveUnknown::kCourseDelay) * k1.lateral_acceleration;
@@ -328,7 +330,9 @@ auto DriveParametricModel::with_model(const Parameters<Scalar>& theta, const Wor
                       .downforce_f = unknown(DriveUnknown::kDownforceF),
                       .downforce_r = unknown(DriveUnknown::kDownforceR),
                       .sensitivity = unknown(DriveUnknown::kLoadSensitivity),
-                      .front_force_share = unknown(DriveUnknown::kFrontForceShare)}};
+                      .front_force_share = unknown(DriveUnknown::kFrontForceShare)},
+        .roll_steer = {unknown(DriveUnknown::kRollSteerF), unknown(DriveUnknown::kRollSteerR)},
+        .trail = unknown(DriveUnknown::kTrail)};
     switch (options_.structure) {
       case DriveStructure::kRoll:
         return work(model, std::integral_constant<int, 4>());
@@ -412,7 +416,7 @@ LinearDrive DriveParametricModel::linearized(double u, const Eigen::VectorXd& th
       for (Eigen::Index j = 0; j < outputs; ++j) {
         const DriveSignal signal = compared_[at(j)].signal;
         const double scale = signal == DriveSignal::kAccelY ? accel_scale : 1.0;
-        y(j) = scale * true_output<kStates>(signal, x, rates) / kSmall;
+        y(j) = scale * true_output<kStates>(signal, x, rates, theta) / kSmall;
         if (signal == DriveSignal::kLateralVelocity)
           y(j) -= theta(static_cast<Eigen::Index>(DriveUnknown::kCourseDelay)) * rates.lateral_acceleration / kSmall;
       }
@@ -438,11 +442,8 @@ DriveNoise DriveParametricModel::noise_at(double u, const Eigen::VectorXd& theta
 }
 
 DriveWhitening DriveParametricModel::whitening(const Eigen::VectorXd& theta) const {
-  const auto unknown = [&](DriveUnknown u) { return theta(static_cast<Eigen::Index>(u)); };
   const bool all_noisy = std::ranges::all_of(compared_, [](const Compared& c) { return c.sigma > 0.0; });
-  if (!(steer_sigma_ > 0.0) || !(steer_error_share_ > 0.0) || !all_noisy || segments_.empty() ||
-      delays_outputs(unknown(DriveUnknown::kYawRateDelay), unknown(DriveUnknown::kAccelYDelay)))
-    return {};
+  if (!(steer_sigma_ > 0.0) || !(steer_error_share_ > 0.0) || !all_noisy || segments_.empty()) return {};
   const SpeedRange range = speeds();
   DriveWhitening out;
   for (int i = 0; i < kFilterSpeeds; ++i) {

@@ -136,7 +136,8 @@ class DriveParametricModel : public estimation::AutodiffModel<DriveParametricMod
   /// What a sensor would show without errors at a state and its rates.
   template <int kStates, typename Scalar>
   [[nodiscard]] Scalar true_output(DriveSignal signal, const Eigen::Matrix<Scalar, kStates, 1>& state,
-                                   const RollingBicycleRates<Scalar, kStates>& rates) const;
+                                   const RollingBicycleRates<Scalar, kStates>& rates,
+                                   const Parameters<Scalar>& theta) const;
   /// The same as it is recorded, delays apart.
   template <typename Scalar>
   [[nodiscard]] Scalar recorded(DriveSignal signal, const Scalar& shown, const Parameters<Scalar>& theta) const;

@@ -200,11 +200,12 @@ Eigen::MatrixXd output_error_covariance(const estimation::OutputErrorEstimate& r
       J(i, places.at(i)) = 1.0;
     }
   }
-  const Eigen::MatrixXd finite = result.covariance.unaryExpr([](double c) { return std::isfinite(c) ? c : 0.0; });
+  const Eigen::MatrixXd total = result.total_covariance();
+  const Eigen::MatrixXd finite = total.unaryExpr([](double c) { return std::isfinite(c) ? c : 0.0; });
   Eigen::MatrixXd P = J * finite * J.transpose();
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = 0; j < J.cols(); ++j) {
-      if (J(i, j) != 0.0 && !std::isfinite(result.covariance(j, j))) P(i, i) = kInfinity;
+      if (J(i, j) != 0.0 && !std::isfinite(total(j, j))) P(i, i) = kInfinity;
     }
   }
   return P;
@@ -303,6 +304,7 @@ OutputErrorProblem output_error_problem(const VehicleProblem& problem, const Equ
   // What is not determined by then crawls along a valley: more relaxations would not help it.
   options.max_relaxations = 12;
   options.tolerance = kTolerance;
+  options.model_error = true;
   options.max_lag =
       std::max<Eigen::Index>(20, static_cast<Eigen::Index>(kLongestLag_s * problem.signals.grid.rate_Hz()));
   return {DriveParametricModel(problem.signals, problem.segments.identification,

@@ -149,7 +149,7 @@ std::optional<Evidence> check_methods(const VehicleProblem& problem, const AxleE
   // Both come from the same data, so the sum of covariances is more than their difference has: a weak test, but one
   // without false alarms.
   Eigen::Matrix3d covariance = axle.covariance;
-  covariance += model_error * output_error->raw.covariance.topLeftCorner(3, 3);
+  covariance += model_error * output_error->raw.total_covariance().topLeftCorner(3, 3);
   // Small angles, which only equation error takes.
   covariance.diagonal() += (kSmallAngleError * axle.value).cwiseAbs2();
   return by_p(Check::kMethodsAgree, estimation::agreement_p(difference, covariance), problem.options);

@@ -19,8 +19,13 @@ namespace {
 constexpr std::array kRolls{DriveUnknown::kRollGradient,     DriveUnknown::kRollFrequency,
                             DriveUnknown::kRollDamping,      DriveUnknown::kRollArm,
                             DriveUnknown::kRelaxationLength, DriveUnknown::kLoadTransfer,
-                            DriveUnknown::kLoadTransferLoss, DriveUnknown::kLoadTransferBalance};
+                            DriveUnknown::kLoadTransferLoss, DriveUnknown::kLoadTransferBalance,
+                            DriveUnknown::kRollSteerF,       DriveUnknown::kRollSteerR};
 constexpr std::array kOfCourse{DriveUnknown::kSideslipBias, DriveUnknown::kCourseDelay};
+/// Of sensors and tyres, the same in all samples: free with their priors in every drive.
+constexpr std::array kBudget{DriveUnknown::kSteerDelay, DriveUnknown::kAccelYDelay, DriveUnknown::kAccelPlace,
+                             DriveUnknown::kTrail};
+constexpr double kRollSteerSigma = 0.05;
 constexpr std::array kOfEffects{DriveUnknown::kDownforceF, DriveUnknown::kDownforceR, DriveUnknown::kLoadSensitivity,
                                 DriveUnknown::kFrontForceShare};
 constexpr std::array kByGeometry{DriveUnknown::kCf,
@@ -34,7 +39,9 @@ constexpr std::array kByGeometry{DriveUnknown::kCf,
                                  DriveUnknown::kRelaxationLength,
                                  DriveUnknown::kLoadTransfer,
                                  DriveUnknown::kLoadTransferLoss,
-                                 DriveUnknown::kLoadTransferBalance};
+                                 DriveUnknown::kLoadTransferBalance,
+                                 DriveUnknown::kRollSteerF,
+                                 DriveUnknown::kRollSteerR};
 
 struct Knowledge {
   double mean = 0.0, sigma = 0.0;
@@ -62,7 +69,7 @@ Knowledge by_geometry(DriveUnknown unknown, const VehicleParameters<double>& veh
     case DriveUnknown::kRollDamping:
       return {0.3, 0.2};
     case DriveUnknown::kRollArm:
-      return {0.85 * vehicle.cg_height, 0.25 * vehicle.cg_height};
+      return {0.85 * vehicle.cg_height, 0.4 * vehicle.cg_height};
     case DriveUnknown::kLoadTransfer: {
       const double rigid = 4.0 * vehicle.cg_height / (vehicle.track_f + vehicle.track_r);
       return {rigid, 0.25 * rigid};
@@ -71,6 +78,9 @@ Knowledge by_geometry(DriveUnknown unknown, const VehicleParameters<double>& veh
       return {0.2, 0.2};
     case DriveUnknown::kLoadTransferBalance:
       return {0.0, 0.4};
+    case DriveUnknown::kRollSteerF:
+    case DriveUnknown::kRollSteerR:
+      return {0.0, kRollSteerSigma};
     default:
       return {0.12 * vehicle.wheelbase(), 0.06 * vehicle.wheelbase()};
   }
@@ -149,6 +159,7 @@ DriveModelOptions::DriveModelOptions() {
   for (const DriveUnknown u : {DriveUnknown::kCf, DriveUnknown::kCr, DriveUnknown::kIz, DriveUnknown::kSteerBias,
                                DriveUnknown::kYawRateBias, DriveUnknown::kAccelYBias})
     free[u] = true;
+  for (const DriveUnknown u : kBudget) free[u] = true;
   start.fill(0.0);
   for (const DriveUnknown u : kByGeometry) start[u] = kNaN;
   start[DriveUnknown::kMu] = 1.0;
@@ -158,10 +169,14 @@ DriveModelOptions::DriveModelOptions() {
   prior[DriveUnknown::kYawRateBias] = kDegree;
   prior[DriveUnknown::kAccelYBias] = 0.5;
   prior[DriveUnknown::kSteerScale] = 0.1;
-  prior[DriveUnknown::kAccelYScale] = 0.1;
+  prior[DriveUnknown::kAccelYScale] = 0.03;
   for (const DriveUnknown u :
        {DriveUnknown::kSteerDelay, DriveUnknown::kYawRateDelay, DriveUnknown::kAccelYDelay, DriveUnknown::kCourseDelay})
     prior[u] = 0.1;
+  prior[DriveUnknown::kSteerDelay] = 0.03;
+  prior[DriveUnknown::kAccelYDelay] = 0.01;
+  prior[DriveUnknown::kAccelPlace] = 0.3;
+  prior[DriveUnknown::kTrail] = 0.015;
   prior[DriveUnknown::kSideslipBias] = kDegree;
   for (const DriveUnknown u : kRolls) prior[u] = kNaN;
   prior[DriveUnknown::kDownforceF] = prior[DriveUnknown::kDownforceR] = kDownforceSigma;
@@ -198,6 +213,7 @@ DriveTyre tyre_named(std::string_view name) {
 void read_estimate(const StudyTable& table, const std::string& key, DriveModelOptions& options) {
   const std::vector<std::string> names(kDriveUnknownNames.begin(), kDriveUnknownNames.end());
   options.free.fill(false);
+  for (const DriveUnknown u : kBudget) options.free[u] = true;
   for (const std::string& name : table.texts(key)) {
     const auto at = std::find(names.begin(), names.end(), name);
     if (at == names.end())

@@ -40,6 +40,9 @@ enum class DriveUnknown : std::size_t {
   /// alone has them.
   kRollFrequency,
   kRollDamping,
+  kRollSteerF,    ///< slip of the front tyres per roll: roll steer, camber thrust over the stiffness [rad/rad]
+  kRollSteerR,    ///< of the rear ones
+  kTrail,         ///< how far behind the middle of their contact tyres' side forces act [m]
   kSteerBias,     ///< measured minus true [rad]
   kSteerScale,    ///< measured over true, less 1: steering ratio, compliance [-]
   kYawRateBias,   ///< [rad/s]
@@ -51,10 +54,11 @@ enum class DriveUnknown : std::size_t {
   kSteerDelay,    ///< how late the front wheels' force answers the recorded steering [s]
   kYawRateDelay,  ///< how late the yaw rate is recorded [s]
   kAccelYDelay,
-  kCourseDelay  ///< how late the course is, of which a lateral velocity is made [s]
+  kCourseDelay,  ///< how late the course is, of which a lateral velocity is made [s]
+  kAccelPlace    ///< how far ahead of its given place the accelerometer is [m]
 };
 /// How many unknowns there are.
-inline constexpr std::size_t kDriveUnknowns = 31;
+inline constexpr std::size_t kDriveUnknowns = 35;
 /// All of them, in order.
 inline constexpr auto kAllDriveUnknowns = enumerators<DriveUnknown, kDriveUnknowns>();
 /// What the model of every structure has of the vehicle.
@@ -85,6 +89,9 @@ inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownNames{"C_f",
                                                                       "front_force_share",
                                                                       "roll_frequency",
                                                                       "roll_damping",
+                                                                      "roll_steer_f",
+                                                                      "roll_steer_r",
+                                                                      "trail",
                                                                       "steer_bias",
                                                                       "steer_scale",
                                                                       "yaw_rate_bias",
@@ -96,12 +103,13 @@ inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownNames{"C_f",
                                                                       "steer_delay",
                                                                       "yaw_rate_delay",
                                                                       "accel_y_delay",
-                                                                      "course_delay"};
+                                                                      "course_delay",
+                                                                      "accel_place"};
 /// Their units, in the same order.
 inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownUnits{
     "N/rad", "N/rad", "kg m^2",  "m",       "1",   "1", "1",     "rad s^2/m", "m",   "m", "1",
-    "1",     "1",     "s^2/m^2", "s^2/m^2", "1",   "1", "rad/s", "1",         "rad", "1", "rad/s",
-    "m/s^2", "1",     "rad",     "rad/s",   "rad", "s", "s",     "s",         "s"};
+    "1",     "1",     "s^2/m^2", "s^2/m^2", "1",   "1", "rad/s", "1", "1", "1", "m", "rad", "1", "rad/s",
+    "m/s^2", "1",     "rad",     "rad/s",   "rad", "s", "s",     "s",         "s", "m"};
 static_assert(!kDriveUnknownNames.back().empty() && !kDriveUnknownUnits.back().empty(), "one is missing");
 /// Whether a parameter is one of these unknowns.
 [[nodiscard]] constexpr bool is_one_of(std::string_view parameter, std::span<const DriveUnknown> unknowns) {

@@ -59,12 +59,12 @@ TriedStructure tried(const VehicleProblem& problem, const OutputErrorResult& fit
   if (!out.usable) return out;
   out.negative_log_likelihood = fit.raw.negative_log_likelihood;
   out.log_prior_volume = log_prior_volume(problem, fit);
-  out.inflation = variance_inflation(fit.raw);
+  out.inflation = fit.raw.autocorrelation;
   out.at_bound = ends_at_simpler(out.structure, fit);
   for (std::size_t i = 0; i < kBasicUnknowns.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(kBasicUnknowns[i]);
     out.value[i] = fit.raw.theta(row);
-    out.sigma[i] = std::sqrt(fit.raw.covariance(row, row));
+    out.sigma[i] = std::sqrt(fit.raw.total_covariance()(row, row));
   }
   if (problem.segments.holdout.empty() || progress.interrupted()) return out;
   const DriveValidation there = predict_drive(problem.signals, problem.segments.holdout, problem.start,
@@ -88,40 +88,11 @@ VehicleProblem with_options(const VehicleProblem& problem, const VehicleIdentify
   return {problem.signals, problem.segments, problem.start, problem.signal_options, options, problem.recording};
 }
 
-DelayByModel delay_in(const OutputErrorResult& fit, DriveUnknown channel) {
-  const estimation::Parameter& p = fit.raw.parameters[static_cast<std::size_t>(channel)];
-  return {channel, p.value, p.sigma};
-}
-
-/// How late the steering is: as estimated, or where the study does not estimate it, as it is where the model is left
-/// free to say so. Nothing where that search fails. A model takes up the delay of any channel as one of the steering:
-/// where it finds one, each channel is tried.
-std::optional<DelayByModel> delay_of(const VehicleProblem& problem, const EquationErrorEstimates* equation_error,
-                                     const OutputErrorResult& fit, Progress& progress) {
-  if (!fit.raw.usable() || progress.interrupted()) return std::nullopt;
-  const auto& free = problem.options.model.free;
-  if (free[DriveUnknown::kSteerDelay]) return delay_in(fit, DriveUnknown::kSteerDelay);
-  const auto with = [&](DriveUnknown channel) {
-    VehicleIdentifyOptions options = problem.options;
-    options.model.free[channel] = true;
-    return estimate_by_output_error(with_options(problem, options), equation_error, fit.raw.theta, fit.whitening,
-                                    SearchEffort::kOnce, progress);
-  };
-  OutputErrorResult best = with(DriveUnknown::kSteerDelay);
-  if (!best.raw.usable()) return std::nullopt;
-  DelayByModel found = delay_in(best, DriveUnknown::kSteerDelay);
-  const estimation::Tolerance& limits = estimation::info_of(estimation::Check::kSteeringDelay).tolerance;
-  const bool raised = estimation::outcome_of(found.value_s, found.sigma_s, limits) != estimation::Outcome::kPassed;
-  if (!raised || !problem.signals[DriveSignal::kAccelY].available()) return found;
-  for (const DriveUnknown channel : {DriveUnknown::kYawRateDelay, DriveUnknown::kAccelYDelay}) {
-    if (free[channel] || progress.interrupted()) continue;
-    OutputErrorResult other = with(channel);
-    const double gain = best.raw.negative_log_likelihood - other.raw.negative_log_likelihood;
-    if (!other.raw.usable() || !(gain > kLikelier * variance_inflation(fit.raw))) continue;
-    found = delay_in(other, channel);
-    best = std::move(other);
-  }
-  return found;
+/// How late the steering is, where it is estimated.
+std::optional<DelayByModel> delay_of(const VehicleProblem& problem, const OutputErrorResult& fit) {
+  if (!fit.raw.usable() || !problem.options.model.free[DriveUnknown::kSteerDelay]) return std::nullopt;
+  const estimation::Parameter& p = fit.raw.parameters[static_cast<std::size_t>(DriveUnknown::kSteerDelay)];
+  return DelayByModel{p.value, p.sigma};
 }
 
 /// The options for a structure. Saturation has no relaxation length where the data did not ask for one.
@@ -318,8 +289,7 @@ class Climb {
       return;
     }
     ladder_.unfinished.converged = true;
-    ladder_.delay = delay_of(given(ladder_.chosen), equation_error_, ladder_.fit, progress_);
-    if (progress_.interrupted()) leave_out("a delay of the steering was not looked for");
+    ladder_.delay = delay_of(given(ladder_.chosen), ladder_.fit);
   }
 
   void leave_out(const char* what) { ladder_.unfinished.left_out.emplace_back(what); }

@@ -19,8 +19,7 @@ struct StructureLadder {
   std::size_t chosen = 0;
   DriveModelOptions model = {};  ///< of the chosen one
   OutputErrorResult fit = {};    ///< of it, to the end
-  /// How late the recorded steering is where the model is left free to say so; the delay of an output where that is
-  /// beyond the limits and the output's explains the drive better.
+  /// How late the vehicle answers the recorded steering, where that is estimated.
   std::optional<DelayByModel> delay = {};
   std::vector<StructureDoubt> doubts;  ///< what the structures that are left open would change
   std::string reason;                  ///< one sentence; empty where the study fixes the structure

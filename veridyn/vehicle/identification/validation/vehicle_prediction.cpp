@@ -35,7 +35,7 @@ DriveTheta theta_of(const VehicleProblem& problem, const VehicleEstimate& estima
                     const estimation::OutputErrorEstimate* output_error, Progress& progress) {
   if (estimate.method == VehicleMethod::kOutputError && output_error != nullptr) {
     return {output_error->theta,
-            output_error->covariance.unaryExpr([](double c) { return std::isfinite(c) ? c : 0.0; })};
+            output_error->total_covariance().unaryExpr([](double c) { return std::isfinite(c) ? c : 0.0; })};
   }
   VehicleParameters<double> p = problem.start;
   p.C_f = estimate.find("C_f")->value;

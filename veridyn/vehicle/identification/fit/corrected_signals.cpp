@@ -1,0 +1,32 @@
+#include "veridyn/vehicle/identification/fit/corrected_signals.hpp"
+
+#include <vector>
+
+#include "veridyn/vehicle/identification/fit/sampled_input.hpp"
+#include "veridyn/vehicle/identification/options/drive_model_options.hpp"
+
+namespace veridyn::vehicle {
+namespace {
+
+/// As it was `later` seconds after each moment of the grid.
+void shift(std::vector<double>& value, double later, double step) {
+  if (value.empty() || later == 0.0) return;
+  const std::vector<double> recorded = value;
+  for (std::size_t k = 0; k < value.size(); ++k)
+    value[k] = between(recorded, static_cast<double>(k) + later / step);
+}
+
+}  // namespace
+
+DriveSignals corrected_signals(DriveSignals signals, const Eigen::VectorXd& theta) {
+  const auto found = [&](DriveUnknown u) { return theta(static_cast<Eigen::Index>(u)); };
+  const double step = signals.grid.step;
+  // The wheels answer later than the recorded steering: they were where it was before.
+  shift(signals[DriveSignal::kSteer].value, -found(DriveUnknown::kSteerDelay), step);
+  shift(signals[DriveSignal::kYawRate].value, found(DriveUnknown::kYawRateDelay), step);
+  shift(signals[DriveSignal::kAccelY].value, found(DriveUnknown::kAccelYDelay), step);
+  signals.accel_position[0] += found(DriveUnknown::kAccelPlace);
+  return signals;
+}
+
+}  // namespace veridyn::vehicle
