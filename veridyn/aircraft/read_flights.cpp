@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "veridyn/aircraft/aircraft_study.hpp"
+#include "veridyn/aircraft/model/atmosphere.hpp"
 #include "veridyn/aircraft/model/estimated_subject.hpp"
 #include "veridyn/aircraft/sensors/air_data_calibration.hpp"
 #include "veridyn/aircraft/simulation/simulate_study.hpp"
@@ -67,6 +68,8 @@ FlightStudy simulated(const Study& study, FlightStudy result, Progress& progress
   log.source = study.name();
   result.truth = std::move(flight.truth);
   result.true_subject = result.subject;
+  result.true_subject->model = quasi_steady_model(result.subject, standard_atmosphere(simulation.altitude).density,
+                                                  flight.trim.condition.airspeed);
   result.true_changes = simulation.changes;
   if (!result.reconstruct.estimate_file.empty()) result.inputs.push_back(result.reconstruct.estimate_file);
   result.mapped = map_channels(log, StudyTable("data.map"), throws_of(result.subject, root.table("subject")));

@@ -127,5 +127,21 @@ TEST(FlightDynamics, DoNotKnowWhereTheyAreOrHowFastTheAirMoves) {
   EXPECT_LT((turned.tail<3>() - calm.tail<3>()).norm(), 1e-12);
 }
 
+// Air that turns by -w gives the forces and moments of an aircraft that turns by w more, and no gyroscopic moment.
+TEST(FlightDynamics, GustRatesAreBodyRatesToTheAirAlone) {
+  const Subject s = builtin_subject("unatrap");
+  const MassProperties body(s.mass, s.inertia->matrix());
+  State x = State::Zero();
+  x(9) = 1.0;
+  x(3) = 20.0;
+  const Vector3d zero = Vector3d::Zero(), turn(0.3, -0.2, 0.1);
+  const State in_gust = aircraft_rate<double>(s, body, x, some_controls(), zero, zero, 1.2, 9.81, {.gust_rates = turn});
+  const AeroLoads<double> turning = aero_loads<double>(s, x.segment<3>(3), turn, some_controls(), 1.2);
+  EXPECT_LT((body.inertia * in_gust.tail<3>() - turning.moment).norm(), 1e-12);
+  EXPECT_LT((in_gust.segment<3>(3) - turning.force / s.mass - Vector3d(0, 0, 9.81)).norm(), 1e-12);
+  EXPECT_LT((in_gust.head<3>() - x.segment<3>(3)).norm(), 1e-15);
+  EXPECT_GT((turning.moment - aero_loads<double>(s, x.segment<3>(3), zero, some_controls(), 1.2).moment).norm(), 0.1);
+}
+
 }  // namespace
 }  // namespace veridyn::aircraft

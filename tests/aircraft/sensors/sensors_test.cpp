@@ -103,6 +103,41 @@ TEST(Sensor, DropsTheGivenShareOfSamples) {
   }
 }
 
+// A roll rate of t through a first-order lag: t - T (1 - e^(-t/T)); and an oscillation through a vane.
+TEST(Sensor, FollowsByItsOwnDynamics) {
+  const Channel lagged =
+      watch("gyro", {.rate = 50.0, .time_constant = 0.1}, 2.0, [](double) { return 0.0; }).at("gyro_x");
+  for (std::size_t i = 0; i < lagged.size(); ++i) {
+    const double t = lagged.times()[i];
+    EXPECT_NEAR(lagged.value[i], t - 0.1 * (1.0 - std::exp(-t / 0.1)), 1e-9);
+  }
+  constexpr double kW = 6.0, kNatural = 20.0, kDamping = 0.3;
+  const Channel vane = watch("ahrs", {.rate = 50.0, .frequency = kNatural, .damping = kDamping}, 10.0, [](double t) {
+                         return 3.1 + 0.2 * std::sin(kW * t);
+                       }).at("roll");  // across +-180 deg
+  const double x = kW / kNatural, gain = 1.0 / std::hypot(1.0 - x * x, 2.0 * kDamping * x);
+  const double phase = std::atan2(2.0 * kDamping * x, 1.0 - x * x);
+  for (std::size_t i = vane.size() / 2; i < vane.size(); ++i) {
+    const double expected = 3.1 + 0.2 * gain * std::sin(kW * vane.times()[i] - phase);
+    // The truth is a straight line in each step of 2.5 ms: h^2/8 w^2 0.2 = 6e-6.
+    EXPECT_NEAR(std::remainder(vane.value[i] - expected, 2 * M_PI), 0.0, 1e-5);
+  }
+}
+
+TEST(Sensor, JitterIsOfTheStampsAlone) {
+  const Channel c =
+      watch("gyro", {.rate = 50.0, .delay = 0.04, .jitter = 0.002}, 400.0, [](double) { return 0.0; }).at("gyro_x");
+  double squares = 0.0;
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    EXPECT_NEAR(c.value[i], 0.02 * static_cast<double>(i), 1e-9) << "a rate of t, taken at its rate";
+    if (i > 0) {
+      EXPECT_GT(c.times()[i], c.times()[i - 1]);
+    }
+    squares += std::pow(c.times()[i] - c.value[i] - 0.04, 2) / static_cast<double>(c.size());
+  }
+  EXPECT_NEAR(std::sqrt(squares), 0.002, 4.0 * 0.002 / std::sqrt(2.0 * 20000.0));
+}
+
 /// Allan variance of a channel over m samples, overlapping.
 double allan_variance(const std::vector<double>& x, std::size_t m) {
   std::vector<double> sum(x.size() + 1, 0.0);

@@ -11,9 +11,10 @@ namespace veridyn::aircraft {
 namespace {
 
 /// Ten seconds of a flight through turbulence, recorded so often.
-SimulatedFlight recorded(double rate_Hz) {
+SimulatedFlight recorded(double rate_Hz, const Subject& subject = testing::linear_unatrap(), bool gradients = false) {
   SimulationOptions o;
-  o.subject = testing::linear_unatrap();
+  o.subject = subject;
+  o.gust_gradients = gradients;
   o.duration = 10.0;
   o.airspeed = 20.0;
   o.turbulence = gust_spectrum("low_moderate");
@@ -27,13 +28,14 @@ const SimulatedFlight& replayed_flight() {
 }
 
 /// Root mean square difference of the replay from the flight over so many seconds from 2 s on, over the signal's own.
-double largest_error(const SimulatedFlight& flight, double seconds) {
+double largest_error(const SimulatedFlight& flight, double seconds,
+                     const Subject& subject = testing::linear_unatrap()) {
   const FlightReplay replay(flight.truth, kGravity);
   const double rate_Hz = 1.0 / (replay.time(1) - replay.time(0));
   const auto begin = static_cast<std::size_t>(std::lround(2.0 * rate_Hz));
   const std::size_t end = begin + static_cast<std::size_t>(std::lround(seconds * rate_Hz));
   Eigen::MatrixXd signals;
-  EXPECT_TRUE(replay.fly(testing::linear_unatrap(), begin, end, signals));
+  EXPECT_TRUE(replay.fly(subject, begin, end, signals));
   double most = 0.0;
   for (std::size_t i = 0; i < kReplaySignals.size(); ++i) {
     const std::vector<double> all = replay.flown(i);
@@ -50,6 +52,14 @@ TEST(FlightReplay, OfTheSameAircraftIsTheFlight) {
   EXPECT_LT(largest_error(recorded(400.0), 5.0), 1e-9);
   // At a quarter of them gusts between the samples are lost.
   EXPECT_LT(largest_error(replayed_flight(), 5.0), 0.1);
+}
+
+TEST(FlightReplay, HasTheGradientsOfGustsAndTheLagOfTheDownwash) {
+  Subject s = testing::linear_unatrap();
+  s.downwash = {.CL_alphadot = 1.0, .Cm_alphadot = -6.0, .tail_arm = 0.8};
+  const SimulatedFlight flight = recorded(400.0, s, true);
+  EXPECT_LT(largest_error(flight, 5.0, s), 1e-9);
+  EXPECT_GT(largest_error(flight, 5.0), 0.05) << "without the downwash";
 }
 
 TEST(FlightReplay, OfAnotherAircraftLeavesTheFlight) {

@@ -29,12 +29,14 @@ TEST(SimulateStudy, ReadsEveryKeyAndRefusesWrongOnes) {
                 "[flight]\nduration = \"5 min\"\naltitude = 200\nground = 20\nairspeed = \"70 km/h\"\nheading = \"90 "
                 "deg\"\nstep = 0.0025\ntruth_rate = 50\ngravity = 9.81\nwind = [1, 2, 0]\nwind_shear = "
                 "0.14\nwind_shear_reference = 10\nwind_drift = 0.1\nwind_drift_time = 60\nturbulence = "
-                "\"low_light\"\nexcitation_gain = 0.5\nplan = \"none\"\n[[flight.manoeuvre]]\nkind = "
+                "\"low_light\"\ngust_gradients = true\nlog_commands = true\nlost_rows = 0.2\nexcitation_gain = "
+                "0.5\nplan = \"none\"\n[[flight.manoeuvre]]\nkind = "
                 "\"multisine\"\nstart = 10\nduration = 20\nsurfaces = [\"elevator\", \"rudder\"]\namplitude = [\"2 "
                 "deg\", \"3 deg\"]\nband = [0.1, 1.5]\n[[flight.manoeuvre]]\nkind = \"3211\"\nstart = "
                 "40\nsurfaces = [\"aileron\"]\npulse = 0.3\n[[flight.manoeuvre]]\nkind = \"turn\"\nstart = "
                 "50\nduration = 10\nbank = \"20 deg\"\n[sensors]\nset = \"perfect\"\n[sensors.gyro]\ntwo_sigma = "
-                "\"1 deg/s\"\nbias = [0.1, 0, 0]\nrate = 50\ndelay = 0.02\n[sensors.pitot]\nenabled = false\n"),
+                "\"1 deg/s\"\nbias = [0.1, 0, 0]\nrate = 50\ndelay = 0.02\njitter = 0.002\ntime_constant = "
+                "0.01\n[sensors.alpha_vane]\nfrequency = 40\ndamping = 0.5\n[sensors.pitot]\nenabled = false\n"),
             "no error");
   EXPECT_THAT(simulate_message(base + "[flight]\nduration = 0\n"),
               HasSubstr("flight.duration: = 0 s must be above 0 and at most 86400 s"));

@@ -154,6 +154,69 @@ TEST(Simulation, TheSpeedAndAttitudeDoNotDependOnTheStep) {
   }
 }
 
+// The coefficients that act are those of the model at the rates with p_g, q_g, r_g; the motion has its own.
+TEST(Simulation, GustGradientsActAsBodyRatesInTheAerodynamics) {
+  SimulationOptions o = calm("unatrap", 20);
+  o.subject.model.stall.reset();
+  o.turbulence = dryden_settings("low_moderate", "test");
+  EXPECT_FALSE(fly(o).truth.has("gust_rate_x"));
+  o.gust_gradients = true;
+  const SimulatedFlight flight = fly(o);
+  ASSERT_TRUE(flight.usable());
+  const auto at = [&](const char* name, std::size_t k) { return flight.truth.at(name).value[k]; };
+  double with = 0.0, without = 0.0;
+  for (std::size_t k = 0; k < flight.truth.at("CL").size(); ++k) {
+    AeroVariables<double> v;
+    v.alpha = at("alpha", k), v.beta = at("beta", k), v.Va = at("airspeed", k);
+    v.de = at("elevator", k), v.da = at("aileron", k), v.dr = at("rudder", k);
+    const double b = 0.5 * o.subject.span / v.Va, c = 0.5 * o.subject.chord / v.Va;
+    for (const double share : {0.0, 1.0}) {
+      v.p_n = b * (at("gyro_x", k) + share * at("gust_rate_x", k));
+      v.q_n = c * (at("gyro_y", k) + share * at("gust_rate_y", k));
+      v.r_n = b * (at("gyro_z", k) + share * at("gust_rate_z", k));
+      const AeroCoefficients<double> m = o.subject.model.evaluate(v);
+      double& largest = share > 0.0 ? with : without;
+      largest = std::max({largest, std::abs(m.CL - at("CL", k)), std::abs(m.CY - at("CY", k))});
+    }
+  }
+  EXPECT_LT(with, 1e-12);
+  EXPECT_GT(without, 1e-3);
+}
+
+// Commands that an ideal servo has at once are the deflections; behind a lag the deflections follow its closed form.
+TEST(Simulation, LogsCommandsInPlaceOfDeflections) {
+  SimulationOptions o = calm("unatrap", 60);
+  o.log_commands = true;
+  o.truth_rate = 400;
+  o.subject.elevator = {};
+  const SimulatedFlight ideal = fly(o);
+  for (std::size_t k = 0; k < ideal.truth.at("elevator").size(); ++k)
+    EXPECT_NEAR(ideal.truth.at("elevator").value[k], ideal.truth.at("elevator_command").value[k], 1e-15);
+  o.subject.elevator.time_constant = 0.08;
+  const SimulatedFlight flight = fly(o);
+  const std::vector<double>&command = flight.truth.at("elevator_command").value,
+        &deflection = flight.truth.at("elevator").value;
+  double lagged = deflection[0], apart = 0.0;
+  for (std::size_t k = 1; k < command.size(); ++k) {
+    lagged += -std::expm1(-0.0025 / 0.08) * (command[k] - lagged);
+    EXPECT_NEAR(deflection[k], lagged, 1e-12);
+    apart = std::max(apart, std::abs(command[k] - deflection[k]));
+  }
+  EXPECT_GT(apart, 0.02);
+  const Channel& logged = flight.measured.at("elevator");
+  for (std::size_t i = 0; i < logged.size(); ++i) EXPECT_NEAR(logged.value[i], command[4 * i], 1e-12);
+}
+
+TEST(Simulation, LosesRowsOfTheLogAlone) {
+  SimulationOptions o = calm("unatrap", 20);
+  const SimulatedFlight all = fly(o);
+  o.lost_rows = 0.2;
+  const SimulatedFlight some = fly(o);
+  EXPECT_EQ(some.measured.at("gyro_x").time, some.measured.at("gyro_y").time);
+  EXPECT_NEAR(static_cast<double>(some.measured.at("gyro_x").size()), 0.8 * 2001.0, 4.0 * std::sqrt(0.16 * 2001.0));
+  EXPECT_EQ(some.truth.at("alpha").value, all.truth.at("alpha").value);
+}
+
 std::string bytes(const Recording& r) {
   std::string out;
   for (const Channel& c : r.channels()) {

@@ -3,6 +3,7 @@
 #include "veridyn/aircraft/model/air_data.hpp"
 #include "veridyn/aircraft/model/rigid_body.hpp"
 #include "veridyn/aircraft/model/subject.hpp"
+#include "veridyn/numerics/linear_systems/washout.hpp"
 
 namespace veridyn::aircraft {
 
@@ -32,10 +33,11 @@ struct AeroLoads {
 /// Lift and drag act in the plane of symmetry, along the wind axes at beta = 0, the side force along body y:
 /// F = qbar S [-CD cos a + CL sin a, CY, -CD sin a - CL cos a], applied at `Subject::force_point`; thrust along body x
 /// at `Propulsion::position`. Below 0.1 m/s normalised rates are taken as at 0.1 m/s. Does not throw or allocate.
+/// @param downwash_lag  alpha - alpha_w of `Downwash` [rad]
 template <typename Scalar>
 [[nodiscard]] AeroLoads<Scalar> aero_loads(const Subject& s, const numerics::Vector3<Scalar>& v_r,
                                            const numerics::Vector3<Scalar>& omega, const Controls<Scalar>& controls,
-                                           const Scalar& rho) {
+                                           const Scalar& rho, const Scalar& downwash_lag = Scalar(0.0)) {
   using std::cos;
   using std::sin;
   AeroLoads<Scalar> out;
@@ -56,7 +58,13 @@ template <typename Scalar>
   v.dr = controls.dr;
   v.CT = out.propulsion.thrust / (Scalar(0.5 * s.wing_area) * rho * Vn * Vn);
   v.Va = Va;
-  const AeroCoefficients<Scalar> c = out.coefficients = s.model.evaluate(v);
+  out.coefficients = s.model.evaluate(v);
+  if (s.downwash.any()) {
+    const Scalar lag = downwash_lag * Scalar(0.5 * s.pitch_length() / s.downwash.tail_arm);
+    out.coefficients.CL += Scalar(s.downwash.CL_alphadot) * lag;
+    out.coefficients.Cm += Scalar(s.downwash.Cm_alphadot) * lag;
+  }
+  const AeroCoefficients<Scalar>& c = out.coefficients;
 
   const Scalar qS = out.dynamic_pressure * Scalar(s.wing_area);
   const Scalar ca = cos(v.alpha), sa = sin(v.alpha);
@@ -73,15 +81,31 @@ template <typename Scalar>
   return out;
 }
 
+/// What the air does to the aircraft besides moving as a whole; as it is, nothing. Within a step of an integration.
+template <typename Scalar>
+struct UnsteadyAir {
+  numerics::Vector3<Scalar> gust_rates{Scalar(0.0), Scalar(0.0), Scalar(0.0)};  ///< p_g, q_g, r_g [rad/s]
+  Scalar alpha{0.0}, downwash_lag{0.0};                                         ///< at the beginning of the step [rad]
+  Scalar elapsed{0.0};                                                          ///< since then [s]
+
+  /// alpha - alpha_w of `Downwash` now [rad], where alpha has changed linearly.
+  [[nodiscard]] Scalar lag(const Downwash& downwash, const AirData<Scalar>& now) const {
+    if (!downwash.any()) return Scalar(0.0);
+    return numerics::washed_out(downwash_lag, now.alpha - alpha, elapsed * now.Va / downwash.tail_arm);
+  }
+};
+
 /// Rate of change of the aircraft's state in air that moves with `wind_N` (NED) plus `gust_B` (body axes) [m/s].
 template <typename Scalar>
 [[nodiscard]] RigidBodyState<Scalar> aircraft_rate(const Subject& s, const MassProperties& body,
                                                    const RigidBodyState<Scalar>& x, const Controls<Scalar>& controls,
                                                    const numerics::Vector3<Scalar>& wind_N,
                                                    const numerics::Vector3<Scalar>& gust_B, const Scalar& rho,
-                                                   double gravity) {
+                                                   double gravity, const UnsteadyAir<Scalar>& air = {}) {
   const numerics::Vector3<Scalar> v_r = R_body_from_ned(x) * (x.template segment<3>(3) - wind_N) - gust_B;
-  const AeroLoads<Scalar> loads = aero_loads<Scalar>(s, v_r, x.template tail<3>(), controls, rho);
+  const numerics::Vector3<Scalar> rates = x.template tail<3>() + air.gust_rates;
+  const AeroLoads<Scalar> loads =
+      aero_loads<Scalar>(s, v_r, rates, controls, rho, air.lag(s.downwash, air_data<Scalar>(v_r)));
   return rigid_body_rate(x, body, loads.force, loads.moment, gravity);
 }
 

@@ -23,7 +23,7 @@ namespace veridyn::aircraft {
 ///
 /// Numbers are written with 17 digits and SI units where JSBSim allows them; functions are in JSBSim's units (feet,
 /// pounds, slugs). Ground contacts, which JSBSim wants, are four points at nose, tail and tips, placed by the span. Not
-/// exported: gusts' rates, sensors, what a recording holds as `thrust`.
+/// exported: gusts' rates, the lag of the downwash, free play, sensors, what a recording holds as `thrust`.
 /// @throws InputError when a parameter of the model has no value, or there is no inertia: JSBSim cannot fly either.
 [[nodiscard]] std::string write_jsbsim(const Subject& subject);
 

@@ -78,13 +78,16 @@ KeyTable<Actuator> actuator_keys(const std::string& name) {
       .number("rate_limit", &A::rate_limit, throttle ? "1/s" : "rad/s", kPositive, "of simulations")
       .otherwise("none")
       .number("time_constant", &A::time_constant, "s", kNotNegative, "of simulations; 0 follows at once")
-      .number("delay", &A::delay, "s", from_to(0.0, 5.0), "of simulations")
-      .check([throttle](const StudyTable& t, A& a) {
-        if (!throttle && t.has("upper") && !t.has("lower")) a.lower = -a.upper;
-        if (!(a.lower < a.upper))
-          t.fail(t.has("lower") ? "lower" : "upper",
-                 fmt::format("lower stop {:g} is not below upper stop {:g}", a.lower, a.upper));
-      });
+      .number("delay", &A::delay, "s", from_to(0.0, 5.0), "of simulations");
+  if (!throttle)
+    table.number("free_play", &A::free_play, "rad", kNotNegative,
+                 "of simulations: what the servo moves after a reversal before the surface does");
+  table.check([throttle](const StudyTable& t, A& a) {
+    if (!throttle && t.has("upper") && !t.has("lower")) a.lower = -a.upper;
+    if (!(a.lower < a.upper))
+      t.fail(t.has("lower") ? "lower" : "upper",
+             fmt::format("lower stop {:g} is not below upper stop {:g}", a.lower, a.upper));
+  });
   return table;
 }
 
@@ -111,6 +114,7 @@ std::string actuator_toml(std::string_view name, const Actuator& a) {
   std::string out = fmt::format("\n[subject.actuators.{}]\nlower = {}\nupper = {}\ntime_constant = {}\ndelay = {}\n",
                                 name, a.lower, a.upper, a.time_constant, a.delay);
   if (std::isfinite(a.rate_limit)) out += fmt::format("rate_limit = {}\n", a.rate_limit);
+  if (a.free_play != 0.0) out += fmt::format("free_play = {}\n", a.free_play);
   return out;
 }
 
@@ -154,8 +158,9 @@ bool operator==(const Subject& a, const Subject& b) {
   return a.name == b.name && a.description == b.description && a.sign_convention == b.sign_convention &&
          a.mass == b.mass && a.inertia == b.inertia && a.sigma == b.sigma && a.wing_area == b.wing_area &&
          a.span == b.span && a.chord == b.chord && a.lengths == b.lengths && a.force_point == b.force_point &&
-         a.imu_position == b.imu_position && a.model == b.model && a.propulsion == b.propulsion &&
-         a.elevator == b.elevator && a.aileron == b.aileron && a.rudder == b.rudder && a.throttle == b.throttle;
+         a.imu_position == b.imu_position && a.model == b.model && a.downwash == b.downwash &&
+         a.propulsion == b.propulsion && a.elevator == b.elevator && a.aileron == b.aileron && a.rudder == b.rudder &&
+         a.throttle == b.throttle;
 }
 
 const KeyTable<Subject>& subject_keys() {
@@ -185,6 +190,7 @@ const KeyTable<Subject>& subject_keys() {
           .whole_table("inertia", &S::inertia, inertia_keys())
           .whole_table("sigma", &S::sigma, sigma_keys())
           .table("model", &S::model, aero_model_keys())
+          .whole_table("downwash", &S::downwash, Downwash::keys())
           .table("propulsion", &S::propulsion, propulsion_keys())
           .table("actuators", std::identity(),
                  KeyTable<S>("actuators")
@@ -219,6 +225,10 @@ std::string write_subject_toml(const Subject& s) {
         e.wing_area, e.span, e.chord, e.Jx, e.Jy, e.Jz, e.Jxz);
   }
   out += "\n" + write_aero_model_toml(s.model);
+  if (const Downwash& d = s.downwash; d.any()) {
+    out += fmt::format("\n[subject.downwash]\ntail_arm = {}\nCL_alphadot = {}\nCm_alphadot = {}\n", d.tail_arm,
+                       d.CL_alphadot, d.Cm_alphadot);
+  }
   out += "\n" + write_propulsion_toml(s.propulsion);
   out += actuator_toml("elevator", s.elevator) + actuator_toml("aileron", s.aileron) +
          actuator_toml("rudder", s.rudder) + actuator_toml("throttle", s.throttle);

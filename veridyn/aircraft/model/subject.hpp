@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "veridyn/aircraft/model/aero_model.hpp"
+#include "veridyn/aircraft/model/downwash.hpp"
 #include "veridyn/aircraft/model/propulsion.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/study.hpp"
@@ -29,13 +30,14 @@ struct Inertia {
 };
 
 /// A servo with what it moves, or the engine's throttle: output follows the command through delay, first-order lag,
-/// rate limit and stops.
+/// rate limit and stops, and for surfaces through the play of the linkage.
 struct Actuator {
   double lower = -0.35;           ///< stop [rad]; throttle: 0
   double upper = 0.35;            ///< stop [rad]; throttle: 1
   double rate_limit = kInfinity;  ///< [rad/s]; throttle [1/s]
   double time_constant = 0.0;     ///< [s]; 0 follows at once
   double delay = 0.0;             ///< [s]
+  double free_play = 0.0;         ///< what the servo moves after a reversal before the surface does [rad]
 
   friend bool operator==(const Actuator&, const Actuator&) = default;
 };
@@ -76,6 +78,7 @@ struct Subject {
   std::array<double, 3> force_point = {0, 0, 0};   ///< where the aerodynamic force acts, from the centre of gravity [m]
   std::array<double, 3> imu_position = {0, 0, 0};  ///< from the centre of gravity, body axes [m]
   AeroModel model;
+  Downwash downwash;
   Propulsion propulsion;
   Actuator elevator, aileron, rudder;
   Actuator throttle{.lower = 0.0, .upper = 1.0};

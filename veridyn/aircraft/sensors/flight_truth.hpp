@@ -28,6 +28,9 @@ enum class Truth : std::size_t {
   kForceX, kForceY, kForceZ,
   kMomentX, kMomentY, kMomentZ,
   kMagX, kMagY, kMagZ,
+  kGustRateX, kGustRateY, kGustRateZ,
+  kDownwashLag,
+  kElevatorCommand, kAileronCommand, kRudderCommand, kThrottleCommand,
   kCount
 };
 /// Values of Truth.
@@ -43,6 +46,8 @@ struct TruthChannel {
 /// Names and units. `accel` is the specific force at the centre of gravity, `imu_accel` at the accelerometer; `wind` is
 /// the whole motion of the air (mean and gusts, NED), `gust` the turbulence in body axes; the coefficients are those
 /// that act (moments about the centre of gravity, thrust taken out); `force` and `moment` are all but gravity.
+/// `gust_rate` is that of `GustGradients`, `downwash_lag` alpha - alpha_w of `Downwash`; commands are those that the
+/// servos had last, within their stops.
 inline constexpr EnumArray<Truth, TruthChannel, kTruthCount> kTruthChannels = {{{
     {"pos_north", "m"}, {"pos_east", "m"}, {"pos_down", "m"},
     {"vel_north", "m/s"}, {"vel_east", "m/s"}, {"vel_down", "m/s"},
@@ -62,6 +67,9 @@ inline constexpr EnumArray<Truth, TruthChannel, kTruthCount> kTruthChannels = {{
     {"force_x", "N"}, {"force_y", "N"}, {"force_z", "N"},
     {"moment_x", "N m"}, {"moment_y", "N m"}, {"moment_z", "N m"},
     {"mag_x", "T"}, {"mag_y", "T"}, {"mag_z", "T"},
+    {"gust_rate_x", "rad/s"}, {"gust_rate_y", "rad/s"}, {"gust_rate_z", "rad/s"},
+    {"downwash_lag", "rad"},
+    {"elevator_command", "rad"}, {"aileron_command", "rad"}, {"rudder_command", "rad"}, {"throttle_command", "1"},
 }}};
 // clang-format on
 

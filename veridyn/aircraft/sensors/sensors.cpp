@@ -46,7 +46,13 @@ KeyTable<SensorSettings> keys_of(const SensorKind& kind) {
               "standard deviation of a further fixed bias, drawn once a flight")
       .number("walk", &S::walk, unit, kNotNegative, "standard deviation of the wandering bias after one second")
       .number("scale", &S::scale, "1", kAnyNumber, "error of scale")
+      .number("time_constant", &S::time_constant, "s", kNotNegative, "of a first-order lag, as of a hose; 0: none")
+      .number("frequency", &S::frequency, "rad/s", kNotNegative,
+              "natural one of second-order dynamics, as of a vane; 0: none")
+      .number("damping", &S::damping, "1", kPositive, "and their damping ratio")
       .number("delay", &S::delay, "s", kNotNegative, "from event to time stamp")
+      .number("jitter", &S::jitter, "s", kNotNegative,
+              "standard deviation of the stamp about that, to 0.45 of a sample's time")
       .number("resolution", &S::resolution, unit, kNotNegative, "step of the last digit; 0: none")
       .number("dropout", &S::dropout, "1", {.low = 0.0, .high = 1.0, .with_high = false}, "share of lost samples")
       .number("dropout_duration", &S::dropout_duration, "s", kNotNegative, "mean length of a loss; 0: single samples")
@@ -90,6 +96,15 @@ std::span<const SensorKind> sensor_kinds() {
   });
   // clang-format on
   return kKinds;
+}
+
+SensorKind of_commands(SensorKind kind) {
+  for (Truth& source : kind.source) {
+    if (source < Truth::kElevator || source > Truth::kThrottle) return kind;
+    source = static_cast<Truth>(static_cast<std::size_t>(source) + static_cast<std::size_t>(Truth::kElevatorCommand) -
+                                static_cast<std::size_t>(Truth::kElevator));
+  }
+  return kind;
 }
 
 SensorSet reference_sensors() {
@@ -147,13 +162,35 @@ Sensor::Sensor(const SensorKind& kind, const SensorSettings& settings, std::uint
     : kind_(kind),
       settings_(settings),
       noise_(seed, std::string("sensor.") + std::string(kind.name)),
-      losses_(seed, std::string("dropout.") + std::string(kind.name)) {
+      losses_(seed, std::string("dropout.") + std::string(kind.name)),
+      jitter_(seed, std::string("jitter.") + std::string(kind.name)) {
+  if (settings.time_constant > 0.0 || settings.frequency > 0.0) {
+    numerics::TransferFunction lag;
+    if (settings.time_constant > 0.0) lag = numerics::low_pass(1.0 / settings.time_constant);
+    if (settings.frequency > 0.0) lag = lag * numerics::low_pass(settings.frequency, settings.damping);
+    dynamics_.assign(kind.channels, numerics::CausalFilter(lag));
+  }
   for (std::size_t i = 0; i < kind.channels; ++i) settings_.bias[i] += settings_.bias_sigma * noise_.normal();
   count_ = static_cast<long long>(std::ceil(settings_.delay * settings_.rate - 1e-9));
 }
 
-void Sensor::observe(double t, const TruthSample& now) {
+Sensor::Values Sensor::seen(double t, const TruthSample& truth) {
+  Values out{};
+  for (std::size_t i = 0; i < kind_.channels; ++i) {
+    const Truth source = kind_.source[i];
+    out[i] = truth[source];
+    if (dynamics_.empty()) continue;
+    if (kTruthChannels[source].angle && started_)
+      out[i] = unwrapped_[i] + std::remainder(out[i] - unwrapped_[i], kFullTurn);
+    unwrapped_[i] = out[i];
+    out[i] = started_ ? dynamics_[i].step(out[i], t - last_time_) : dynamics_[i].reset(out[i]);
+  }
+  return out;
+}
+
+void Sensor::observe(double t, const TruthSample& truth) {
   if (!settings_.enabled) return;
+  const Values now = seen(t, truth);
   constexpr double kSlack = 1e-9;  // a stamp that coincides with a step up to rounding belongs to it
   while (true) {
     const double stamp = static_cast<double>(count_) / settings_.rate;
@@ -161,7 +198,7 @@ void Sensor::observe(double t, const TruthSample& now) {
     if (event > t + kSlack) break;
     const double span = t - last_time_;
     const double share = !started_ || span <= 0.0 ? 1.0 : std::min(1.0, std::max(0.0, (event - last_time_) / span));
-    sample(event, stamp, share, now);
+    sample(stamp, share, now);
     ++count_;
   }
   last_ = now;
@@ -169,20 +206,20 @@ void Sensor::observe(double t, const TruthSample& now) {
   started_ = true;
 }
 
-void Sensor::sample(double /*event_time*/, double stamp, double share, const TruthSample& now) {
+void Sensor::sample(double stamp, double share, const Values& now) {
   std::array<double, 4> y{};
   const double walk_step = settings_.walk / std::sqrt(settings_.rate);
   for (std::size_t i = 0; i < kind_.channels; ++i) {
     const Truth source = kind_.source[i];
-    double truth = now[source];
+    double value = now[i];
     const bool angle = kTruthChannels[source].angle;
     if (share < 1.0) {
-      double change = now[source] - last_[source];
+      double change = now[i] - last_[i];
       if (angle) change = std::remainder(change, kFullTurn);
-      truth = last_[source] + share * change;
+      value = last_[i] + share * change;
     }
     wander_[i] += walk_step * noise_.normal();
-    y[i] = settings_.bias[i] + wander_[i] + (1.0 + settings_.scale) * truth + settings_.sigma[i] * noise_.normal();
+    y[i] = settings_.bias[i] + wander_[i] + (1.0 + settings_.scale) * value + settings_.sigma[i] * noise_.normal();
     if (angle) y[i] = std::remainder(y[i], kFullTurn);
     if (settings_.resolution > 0.0) y[i] = settings_.resolution * std::round(y[i] / settings_.resolution);
   }
@@ -196,6 +233,11 @@ void Sensor::sample(double /*event_time*/, double stamp, double share, const Tru
       lost_until_ = stamp + (1.0 - 1e-9) / settings_.rate - extra * std::log1p(-losses_.uniform());
       return;
     }
+  }
+  if (settings_.jitter > 0.0) {
+    // Less than half a period, so that stamps stay in order.
+    const double most = 0.45 / settings_.rate;
+    stamp += std::clamp(settings_.jitter * jitter_.normal(), -most, most);
   }
   time_.push_back(stamp);
   for (std::size_t i = 0; i < kind_.channels; ++i) value_[i].push_back(y[i]);

@@ -10,12 +10,14 @@
 #include "veridyn/aircraft/sensors/flight_truth.hpp"
 #include "veridyn/core/recording.hpp"
 #include "veridyn/core/study.hpp"
+#include "veridyn/numerics/linear_systems/causal_filter.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::aircraft {
 
-/// Error model of one sensor: y = bias + walk(t) + (1 + scale) y_true + white noise, taken at its rate, with delay,
-/// quantisation and dropouts. Units are those of the channel in SI.
+/// Error model of one sensor: y = bias + walk(t) + (1 + scale) y_seen + white noise, taken at its rate, with delay,
+/// quantisation and dropouts. What it sees follows the truth by its own dynamics, of first order, second order or both.
+/// Units are those of the channel in SI.
 struct SensorSettings {
   bool enabled = true;
   double rate = 100.0;            ///< [Hz]
@@ -24,7 +26,11 @@ struct SensorSettings {
   double bias_sigma = 0.0;        ///< standard deviation of a further fixed bias, drawn once a flight
   double walk = 0.0;              ///< of the wandering bias: standard deviation after one second [unit/sqrt(s)]
   double scale = 0.0;             ///< error of scale [-]
+  double time_constant = 0.0;     ///< of a first-order lag [s]; 0: none
+  double frequency = 0.0;         ///< natural one of second-order dynamics [rad/s]; 0: none
+  double damping = 0.7;           ///< and their damping ratio
   double delay = 0.0;             ///< from event to time stamp [s]
+  double jitter = 0.0;            ///< standard deviation of the stamp about that [s], to 0.45 of a sample's time
   double resolution = 0.0;        ///< step of the last digit; 0: none
   double dropout = 0.0;           ///< share of samples that are lost [0, 1)
   double dropout_duration = 0.0;  ///< mean length of a loss [s]; 0: single samples
@@ -43,6 +49,9 @@ struct SensorKind {
 
 /// All sensors that can be simulated.
 [[nodiscard]] std::span<const SensorKind> sensor_kinds();
+
+/// The kind that records what the servos are told in place of deflections; of other sensors the same.
+[[nodiscard]] SensorKind of_commands(SensorKind kind);
 
 /// Settings of every sensor, in the order of `sensor_kinds()`.
 using SensorSet = std::vector<SensorSettings>;
@@ -69,14 +78,21 @@ class Sensor {
   void move_into(Recording& recording);
 
  private:
-  void sample(double event_time, double stamp, double share, const TruthSample& now);
+  /// A value for each channel.
+  using Values = std::array<double, 4>;
+
+  [[nodiscard]] Values seen(double t, const TruthSample& truth);
+  void sample(double stamp, double share, const Values& now);
 
   SensorKind kind_;
   SensorSettings settings_;
   numerics::RandomStream noise_;
   numerics::RandomStream losses_;
+  numerics::RandomStream jitter_;
+  std::vector<numerics::CausalFilter> dynamics_;  ///< of each channel, where it has any
+  Values unwrapped_{};                            ///< what went into them last
   std::array<double, 4> wander_{};
-  TruthSample last_;
+  Values last_{};  ///< seen
   double last_time_ = 0.0;
   bool started_ = false;
   long long count_ = 0;

@@ -23,7 +23,11 @@ Controls<double> blended(const Controls<double>& a, const Controls<double>& b, d
 FlightReplay::FlightReplay(const Recording& truth, double gravity) : gravity_(gravity) {
   const std::span<const double> times = truth.at(kTruthChannels.front().name).times();
   time_.assign(times.begin(), times.end());
-  for (std::size_t i = 0; i < kTruthCount; ++i) value_[i] = truth.at(kTruthChannels[i].name).value;
+  for (std::size_t i = 0; i < kTruthCount; ++i) {
+    // What a flight does not have is not in its truth.
+    const Channel* channel = truth.find(kTruthChannels[i].name);
+    value_[i] = channel != nullptr ? channel->value : std::vector<double>(time_.size(), 0.0);
+  }
 }
 
 std::vector<double> FlightReplay::flown(std::size_t signal) const { return value_[kReplaySignals[signal]]; }
@@ -53,13 +57,15 @@ bool FlightReplay::fly(const Subject& subject, std::size_t begin, std::size_t en
   const MassProperties body(subject.mass, subject.inertia->matrix());
   signals.resize(signed_index(kReplaySignals.size()), signed_index(end - begin));
   RigidBodyState<double> x = state(begin);
+  double lag = value(Truth::kDownwashLag, begin);
   for (std::size_t k = begin; k < end; ++k) {
     const double rho = standard_atmosphere(-x(2)).density;
     const Controls<double> now = controls(k);
     const Eigen::Vector3d wind = vector(Truth::kMeanWindNorth, k), gust = vector(Truth::kGustX, k);
     const Eigen::Vector3d omega = x.tail<3>();
-    const AeroLoads<double> loads =
-        aero_loads<double>(subject, R_body_from_ned(x) * (x.segment<3>(3) - wind) - gust, omega, now, rho);
+    const Eigen::Vector3d v_r = R_body_from_ned(x) * (x.segment<3>(3) - wind) - gust;
+    const Eigen::Vector3d turn = vector(Truth::kGustRateX, k);
+    const AeroLoads<double> loads = aero_loads<double>(subject, v_r, omega + turn, now, rho, lag);
     const bool flies = x.allFinite() && std::abs(loads.air.alpha) <= 0.5 * kPi && omega.norm() <= 50.0;
     if (!flies) return false;
     const Eigen::Vector3d accel = loads.force / subject.mass;
@@ -67,14 +73,20 @@ bool FlightReplay::fly(const Subject& subject, std::size_t begin, std::size_t en
     if (k + 1 == end) break;
     const Controls<double> next = controls(k + 1);
     const Eigen::Vector3d next_wind = vector(Truth::kMeanWindNorth, k + 1), next_gust = vector(Truth::kGustX, k + 1);
+    const Eigen::Vector3d next_turn = vector(Truth::kGustRateX, k + 1);
     const double step = time_[k + 1] - time_[k];
+    UnsteadyAir<double> air{.alpha = loads.air.alpha, .downwash_lag = lag};
     const auto rate = [&](double t, const RigidBodyState<double>& y) {
       const double share = (t - time_[k]) / step;
       const Eigen::Vector3d w = wind + share * (next_wind - wind), g = gust + share * (next_gust - gust);
-      return aircraft_rate<double>(subject, body, y, blended(now, next, share), w, g, rho, gravity_);
+      air.gust_rates = turn + share * (next_turn - turn);
+      air.elapsed = t - time_[k];
+      return aircraft_rate<double>(subject, body, y, blended(now, next, share), w, g, rho, gravity_, air);
     };
     x = numerics::runge_kutta_4_step(rate, time_[k], x, step);
     normalise_attitude(x);
+    air.elapsed = step;
+    lag = air.lag(subject.downwash, air_data<double>(R_body_from_ned(x) * (x.segment<3>(3) - next_wind) - next_gust));
   }
   return true;
 }

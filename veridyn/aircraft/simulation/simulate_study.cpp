@@ -95,6 +95,8 @@ const KeyTable<SimulationOptions>& SimulationOptions::keys() {
           .with(&O::wind, WindSettings::keys())
           .other(turbulence_key({}, "gusts by Dryden's spectra (MIL-F-8785C), at low or medium altitude"),
                  [](const StudyTable& t, const std::string& key, O& o) { o.turbulence = read_dryden(t, key); })
+          .flag("gust_gradients", &O::gust_gradients,
+                "gusts differ over the aircraft, which acts as additional body rates p_g, q_g, r_g (MIL-F-8785C)")
           .number("excitation_gain", &O::excitation_gain, "1", from_to(0.0, 1.0),
                   "share of its feedback that the pilot keeps on a surface while it is excited")
           .other({"plan", "", "`\"default\"`, `\"none\"`", "\"default\"",
@@ -104,6 +106,10 @@ const KeyTable<SimulationOptions>& SimulationOptions::keys() {
                    const std::vector<std::string> plans{"default", "none"};
                    if (t.choice_or(key, plans, "") == "none") o.manoeuvres.emplace();
                  })
+          .flag("log_commands", &O::log_commands,
+                "the log has the commands to the servos in place of deflections, as autopilots write it")
+          .number("lost_rows", &O::lost_rows, "1", {.low = 0.0, .high = 1.0, .with_high = false},
+                  "share of rows of the log that are lost at random, each with all samples of its stamp")
           .tables("manoeuvre", Manoeuvre::keys(),
                   [](const StudyTable& one, O& o) {
                     if (!o.manoeuvres) o.manoeuvres.emplace();

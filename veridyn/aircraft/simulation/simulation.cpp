@@ -7,8 +7,10 @@
 #include <cmath>
 #include <span>
 
+#include "veridyn/aircraft/sensors/lost_rows.hpp"
 #include "veridyn/aircraft/sensors/servo.hpp"
 #include "veridyn/aircraft/simulation/autopilot.hpp"
+#include "veridyn/aircraft/simulation/gust_gradients.hpp"
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
@@ -35,6 +37,9 @@ struct Moment {
   Controls<double> controls;
   Vector3d mean_wind;
   Vector3d gust;
+  Vector3d gust_rates;
+  double downwash_lag = 0.0;
+  PerSurface<double> command{};
 };
 
 TruthSample truth_of(const Subject& s, const MassProperties& body, const Moment& m, double gravity) {
@@ -44,7 +49,8 @@ TruthSample truth_of(const Subject& s, const MassProperties& body, const Moment&
   const Air<double> air = standard_atmosphere(-x(2));
   const Vector3d omega = x.tail<3>();
   const Vector3d v_r = R * (x.segment<3>(3) - m.mean_wind) - m.gust;
-  const AeroLoads<double> loads = aero_loads<double>(s, v_r, omega, m.controls, air.density);
+  const Vector3d rates = omega + m.gust_rates;
+  const AeroLoads<double> loads = aero_loads<double>(s, v_r, rates, m.controls, air.density, m.downwash_lag);
   const State rate = rigid_body_rate<double>(x, body, loads.force, loads.moment, gravity);
   const auto euler = numerics::euler_from_quaternion(attitude_of(x));
   put(out, Truth::kPosNorth, x.head<3>());
@@ -85,7 +91,20 @@ TruthSample truth_of(const Subject& s, const MassProperties& body, const Moment&
   put(out, Truth::kForceX, loads.force);
   put(out, Truth::kMomentX, loads.moment);
   put(out, Truth::kMagX, R * kMagneticField);
+  put(out, Truth::kGustRateX, m.gust_rates);
+  out[Truth::kDownwashLag] = m.downwash_lag;
+  out[Truth::kElevatorCommand] = m.command[Surface::kElevator];
+  out[Truth::kAileronCommand] = m.command[Surface::kAileron];
+  out[Truth::kRudderCommand] = m.command[Surface::kRudder];
+  out[Truth::kThrottleCommand] = m.command[Surface::kThrottle];
   return out;
+}
+
+/// Whether the truth of a flight has such a channel: those of what it does not have are left out.
+bool has_truth(const SimulationOptions& o, Truth t) {
+  if (t >= Truth::kElevatorCommand) return o.log_commands;
+  if (t == Truth::kDownwashLag) return o.subject.downwash.any();
+  return t < Truth::kGustRateX || o.gust_gradients;
 }
 
 /// Collects samples of the truth for a recording.
@@ -95,9 +114,10 @@ class TruthRecorder {
     time_.push_back(t);
     for (std::size_t i = 0; i < kTruthCount; ++i) value_[i].push_back(sample.value[i]);
   }
-  void move_into(Recording& recording) {
+  void move_into(Recording& recording, const SimulationOptions& o) {
     const TimeBase base = make_time_base(std::move(time_));
     for (std::size_t i = 0; i < kTruthCount; ++i) {
+      if (!has_truth(o, static_cast<Truth>(i))) continue;
       recording.add(
           make_channel(std::string(kTruthChannels[i].name), kTruthChannels[i].unit, base, std::move(value_[i])));
     }
@@ -137,10 +157,14 @@ class FlyingAircraft {
                 Servo(subject_.rudder, trim.controls.dr, step_),
                 Servo(subject_.throttle, trim.controls.throttle, step_)},
         gusts_(options.turbulence, numerics::RandomStream(options.seed, "turbulence")),
+        gradients_(options.turbulence, subject_.span, numerics::RandomStream(options.seed, "gust gradients")),
+        with_gradients_(options.gust_gradients && !options.turbulence.calm()),
         wind_(options.wind, numerics::RandomStream(options.seed, "wind")) {
     now_.controls = trim.controls;
     now_.mean_wind = wind_.at(options.altitude - ground_);
     now_.gust = gust_vector();
+    now_.gust_rates = gust_rates();
+    now_.command = PerSurface<double>{{trim.controls.de, trim.controls.da, trim.controls.dr, trim.controls.throttle}};
     now_.state.setZero();
     now_.state(2) = -options.altitude;
     now_.state.segment<4>(6) = numerics::quaternion_from_euler(0.0, trim.theta, options.heading).coeffs();
@@ -157,9 +181,13 @@ class FlyingAircraft {
   /// Over one step from `t` [s], where the truth is `truth`, with the surfaces commanded to `command`.
   void advance(double t, const TruthSample& truth, const PerSurface<double>& command) {
     for (const Surface s : enumerators<Surface, kSurfaces>()) servos_[s].advance(command[s]);
-    gusts_.advance(step_, truth[Truth::kAirspeed]);
+    const double Va = truth[Truth::kAirspeed];
+    const std::array<double, 3> gust_before = gusts_.gust();
+    gusts_.advance(step_, Va);
+    if (with_gradients_) gradients_.advance(step_, Va, gust_before, gusts_.gust());
     wind_.advance(step_);
     Moment next;
+    next.command = within_stops(command);
     next.controls = {servos_[Surface::kElevator].position(), servos_[Surface::kAileron].position(),
                      servos_[Surface::kRudder].position(), servos_[Surface::kThrottle].position(), 0.0};
     next.controls.rotor_speed =
@@ -167,6 +195,7 @@ class FlyingAircraft {
         rotor_share_ * (subject_.propulsion.steady_rotor_speed(next.controls.throttle) - now_.controls.rotor_speed);
     next.mean_wind = wind_.at(-now_.state(2) - ground_);
     next.gust = gust_vector();
+    next.gust_rates = gust_rates();
 
     // Density changes by less than 1e-5 of itself within a step, so it is held.
     const double rho = truth[Truth::kAirDensity];
@@ -181,10 +210,16 @@ class FlyingAircraft {
       c.rotor_speed = between(now_.controls.rotor_speed, next.controls.rotor_speed);
       const Vector3d mean = now_.mean_wind + share * (next.mean_wind - now_.mean_wind);
       const Vector3d gust = now_.gust + share * (next.gust - now_.gust);
-      return aircraft_rate<double>(subject_, body_, x, c, mean, gust, rho, gravity_);
+      return aircraft_rate<double>(subject_, body_, x, c, mean, gust, rho, gravity_,
+                                   {.gust_rates = now_.gust_rates + share * (next.gust_rates - now_.gust_rates),
+                                    .alpha = truth[Truth::kAlpha],
+                                    .downwash_lag = now_.downwash_lag,
+                                    .elapsed = time - t});
     };
     next.state = numerics::runge_kutta_4_step(rate, t, now_.state, step_);
     normalise_attitude(next.state);
+    const UnsteadyAir<double> air{.alpha = truth[Truth::kAlpha], .downwash_lag = now_.downwash_lag, .elapsed = step_};
+    next.downwash_lag = air.lag(subject_.downwash, air_data_at(next));
     now_ = next;
   }
 
@@ -192,6 +227,23 @@ class FlyingAircraft {
   [[nodiscard]] Vector3d gust_vector() const {
     const std::array<double, 3> g = gusts_.gust();
     return {g[0], g[1], g[2]};
+  }
+  [[nodiscard]] Vector3d gust_rates() const {
+    if (!with_gradients_) return Vector3d::Zero();
+    const std::array<double, 3> g = gradients_.rates();
+    return {g[0], g[1], g[2]};
+  }
+
+  [[nodiscard]] static AirData<double> air_data_at(const Moment& m) {
+    return air_data<double>(R_body_from_ned(m.state) * (m.state.segment<3>(3) - m.mean_wind) - m.gust);
+  }
+
+  [[nodiscard]] PerSurface<double> within_stops(PerSurface<double> command) const {
+    const PerSurface<const Actuator*> actuators{
+        {&subject_.elevator, &subject_.aileron, &subject_.rudder, &subject_.throttle}};
+    for (const Surface s : enumerators<Surface, kSurfaces>())
+      command[s] = std::clamp(command[s], actuators[s]->lower, actuators[s]->upper);
+    return command;
   }
 
   /// By how much of its distance to the steady speed a rotor comes nearer in a step.
@@ -207,6 +259,8 @@ class FlyingAircraft {
   double rotor_share_;
   PerSurface<Servo> servos_;
   DrydenGusts gusts_;
+  GustGradients gradients_;
+  bool with_gradients_;
   Wind wind_;
   Moment now_;
 };
@@ -280,7 +334,8 @@ SimulatedFlight simulate(const SimulationOptions& o, Progress& progress) {
   Autopilot pilot(o.subject, flight.trim, linear, o.altitude, o.heading, o.excitation_gain);
   FlyingAircraft aircraft(o, flight.trim);
   std::vector<Sensor> sensors;
-  for (std::size_t i = 0; i < o.sensors.size(); ++i) sensors.emplace_back(sensor_kinds()[i], o.sensors[i], o.seed);
+  for (std::size_t i = 0; i < o.sensors.size(); ++i)
+    sensors.emplace_back(o.log_commands ? of_commands(sensor_kinds()[i]) : sensor_kinds()[i], o.sensors[i], o.seed);
 
   TruthRecorder recorder;
   const auto steps = static_cast<long long>(std::llround(o.duration / o.step));
@@ -312,7 +367,8 @@ SimulatedFlight simulate(const SimulationOptions& o, Progress& progress) {
     if (k < steps) aircraft.advance(t, truth, pilot.command(t, o.step, truth, excitation));
   }
   for (Sensor& sensor : sensors) sensor.move_into(flight.measured);
-  recorder.move_into(flight.truth);
+  if (o.lost_rows > 0.0) lose_rows(flight.measured, o.lost_rows, numerics::RandomStream(o.seed, "lost rows"));
+  recorder.move_into(flight.truth, o);
   flight.measured.events = flight.truth.events =
       events_of(flight.manoeuvres, std::span(o.changes).first(changed), flight.end_time);
   static_cast<void>(progress.update(1.0));

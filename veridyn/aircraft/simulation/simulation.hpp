@@ -38,7 +38,10 @@ struct SimulationOptions {
   double excitation_gain = 0.3;
   WindSettings wind;
   DrydenSettings turbulence;
+  bool gust_gradients = false;  ///< turbulence turns the air too: see `GustGradients`
   SensorSet sensors = reference_sensors();
+  bool log_commands = false;                         ///< the servos' channels are commands, not deflections
+  double lost_rows = 0.0;                            ///< share of rows of the log that are lost: see `lose_rows`
   std::optional<std::vector<Manoeuvre>> manoeuvres;  ///< none: `default_plan`
   std::vector<ModelChange> changes = {};             ///< by time
   std::uint64_t seed = 1;
