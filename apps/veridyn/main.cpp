@@ -29,7 +29,8 @@ int main(int argc, char** argv) {
                                reconstruct_command(), identify_command(),    track_command(),     validate_command(),
                                scale_command(),       sensitivity_command(), reproduce_command(), export_command(),
                                cue_command(),         rig_command(),         serve_command(),     camera_command(),
-                               regress_command(),     compare_command(),     checks_command(),    keys_command()};
+                               regress_command(),     compare_command(),     checks_command(),    keys_command(),
+                               priors_command()};
   const veridyn::Interruption interruption;
   veridyn::request_on_signals(interruption);
   return run_program(commands, interruption, argc, argv);

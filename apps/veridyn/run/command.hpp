@@ -101,6 +101,7 @@ struct Command {
 [[nodiscard]] Command init_command();
 [[nodiscard]] Command inspect_command();
 [[nodiscard]] Command keys_command();
+[[nodiscard]] Command priors_command();
 [[nodiscard]] Command reconstruct_command();
 [[nodiscard]] Command regress_command();
 [[nodiscard]] Command reproduce_command();

@@ -30,6 +30,7 @@ struct Found {
   std::string text, about;
   DriveStructure structure = DriveStructure::kBicycle;
   double I_z_error = kNaN;  ///< a share
+  bool I_z_inside = false;  ///< whether its interval of 95 % holds the truth
 };
 
 /// What a drive gives whose recorded steering is so late.
@@ -46,40 +47,30 @@ Found found(VehicleStudy study, double late_s) {
   out.text = says(*row);
   out.about = row->about;
   out.structure = id.structure;
-  if (const VehicleEstimate* best = id.best()) out.I_z_error = best->find("I_z")->value / study.truth.at("I_z") - 1.0;
+  if (const VehicleEstimate* best = id.best()) {
+    const estimation::Parameter* I_z = best->find("I_z");
+    const double truth = study.truth.at("I_z");
+    out.I_z_error = I_z->value / truth - 1.0;
+    out.I_z_inside = I_z->low95 <= truth && truth <= I_z->high95;
+  }
   return out;
 }
 
-// A hand wheel that is 30 ms late took more than half of I_z, and nothing said so.
-TEST(SteeringDelay, IsFoundOnABicycleAndNotRaisedWhereThereIsNone) {
+// A hand wheel that is 30 ms late took more than half of I_z.
+TEST(SteeringDelay, IsEstimatedAndCorrectedByDefault) {
   const VehicleStudy study = testing::campaign_drive("reference bicycle", 500);
-  const Found clean = found(study, 0.0);
-  EXPECT_EQ(clean.outcome, Outcome::kPassed) << clean.text;
-  EXPECT_LT(std::abs(clean.I_z_error), 0.03);
-  const Found late = found(study, 0.03);
-  EXPECT_EQ(late.outcome, Outcome::kFailed) << late.text;
-  EXPECT_NEAR(late.delay_s, -0.03, 0.002);
-  EXPECT_GT(std::abs(late.I_z_error), 0.3);
-  EXPECT_EQ(late.about, "steer, yaw_rate");
-}
-
-// The advice, followed: given the delay, the drive passes again.
-TEST(SteeringDelay, ThatIsGivenIsTakenOff) {
-  VehicleStudy study = testing::campaign_drive("reference bicycle", 501);
-  study.identify.model.free[DriveUnknown::kSteerDelay] = true;
-  test::delayed({"steer"}, 0.03)(study.log.mapped.recording);
-  const testing::IdentifiedDrive estimated = testing::identified(study);
-  ASSERT_FALSE(estimated.refused) << estimated.message;
-  const VehicleEstimate* best = estimated.analysis.identification.best();
-  ASSERT_NE(best, nullptr);
-  EXPECT_NEAR(best->find("steer_delay")->value, -0.03, 0.002);
-  EXPECT_LT(std::abs(best->find("I_z")->value / study.truth.at("I_z") - 1.0), 0.03);
+  for (const double late_s : {0.0, 0.03}) {
+    const Found f = found(study, late_s);
+    EXPECT_EQ(f.outcome, Outcome::kPassed) << f.text;
+    EXPECT_NEAR(f.delay_s, -late_s, 0.002);
+    EXPECT_LT(std::abs(f.I_z_error), 0.03);
+    EXPECT_EQ(f.about, "steer, yaw_rate");
+  }
 }
 
 // Eight drives of each campaign vehicle and 24 of rolling cars, in time and with a steering 10 and 20 ms late; five
-// minutes. None of the 48 in time is raised; late, all 48 of the campaign vehicles, and 22 of 48 rolling cars: their
-// tyres' lag hides the rest, at I_z 5 to 32 % too small. Writes steering_delay.csv.
-TEST(SteeringDelaySoak, IsFoundAndNotRaisedWhereThereIsNone) {
+// minutes. Writes steering_delay.csv.
+TEST(SteeringDelaySoak, LeavesTheYawInertiaWithinItsIntervals) {
   if (std::getenv("VERIDYN_SOAK") == nullptr) GTEST_SKIP() << "a long-running campaign; `make soak` runs it";
   struct Drive {
     std::string subject;
@@ -101,24 +92,21 @@ TEST(SteeringDelaySoak, IsFoundAndNotRaisedWhereThereIsNone) {
     results[k] = found(study_of(drives[k / kLate_s.size()]), kLate_s[k % kLate_s.size()]);
   });
   std::ofstream table("steering_delay.csv");
-  table << "subject,drive,late_s,delay_s,outcome,structure,I_z_error,text\n";
-  std::size_t alarms = 0, missed = 0, missed_rolling = 0;
+  table << "subject,drive,late_s,delay_s,outcome,structure,I_z_error,inside,text\n";
+  std::size_t alarms = 0, inside = 0, judged = 0;
   for (std::size_t k = 0; k < results.size(); ++k) {
     const Drive& drive = drives[k / kLate_s.size()];
     const double late_s = kLate_s[k % kLate_s.size()];
     const Found& f = results[k];
-    table << fmt::format("{},{},{},{:.5f},{},\"{}\",{:.4f},\"{}\"\n", drive.subject, drive.number, late_s, f.delay_s,
-                         to_string(f.outcome), to_string(f.structure), f.I_z_error, f.text);
-    const bool raised = f.outcome != Outcome::kPassed;
-    if (late_s == 0.0) {
-      alarms += raised ? 1 : 0;
-    } else if (!raised) {
-      (drive.subject == "rolling car" ? missed_rolling : missed) += 1;
-    }
+    table << fmt::format("{},{},{},{:.5f},{},\"{}\",{:.4f},{:d},\"{}\"\n", drive.subject, drive.number, late_s,
+                         f.delay_s, to_string(f.outcome), to_string(f.structure), f.I_z_error, f.I_z_inside, f.text);
+    if (f.outcome != Outcome::kPassed) ++alarms;
+    if (!std::isfinite(f.I_z_error)) continue;
+    ++judged;
+    if (f.I_z_inside) ++inside;
   }
   EXPECT_EQ(alarms, 0U);
-  EXPECT_EQ(missed, 0U);
-  EXPECT_LE(missed_rolling, 28U);  // of 48
+  EXPECT_GE(inside, judged * 9 / 10) << inside << " of " << judged;
 }
 
 }  // namespace

@@ -327,5 +327,26 @@ TEST(RollingBicycle, DampersMoveLoadAsSpringsDo) {
   EXPECT_EQ(model.axle_forces<4>(slip, {0.0, 0.0, 0.04, 0.0}), model.axle_forces<4>(slip, {0.0, 0.0, 0.0, rate}));
 }
 
+// In a steady turn the moments of both axles balance about the centre of gravity, where trail moves both forces back:
+// F_f = m a_y (b + t)/L; roll steer is slip that needs no steering. Small angles:
+//     delta = L a_y/u^2 + K a_y,  K = m (b + t)/(2 L C_f) - m (a - t)/(2 L C_r) - (e_f - e_r) roll per a_y.
+TEST(RollingBicycle, UndersteersByTrailAndRollSteerAsTheBalanceOfASteadyTurnSays) {
+  LinearRolling car = rolling_car(BicycleGeometry::kSmallAngles);
+  car.trail = 0.03;
+  car.roll_steer = {-0.06, 0.04};
+  const VehicleParameters<double>& p = car.bicycle.parameters;
+  Eigen::Matrix4d A;
+  const double small = 1e-6;
+  for (Eigen::Index i = 0; i < 4; ++i)
+    A.col(i) = car.rates<4>(small * RollingState<4>::Unit(i), 0.0, kForwardSpeed).derivative / small;
+  const RollingState<4> B = car.rates<4>(RollingState<4>::Zero(), small, kForwardSpeed).derivative / small;
+  const RollingState<4> steady = -A.inverse() * B;
+  const double lateral = steady(1) * kForwardSpeed, L = p.wheelbase();
+  const double understeer = p.mass * (p.b + car.trail) / (2.0 * L * p.C_f) -
+                            p.mass * (p.a - car.trail) / (2.0 * L * p.C_r) + (0.06 + 0.04) * car.roll.gradient;
+  EXPECT_NEAR(1.0 / lateral, L / (kForwardSpeed * kForwardSpeed) + understeer, 1e-9);
+  EXPECT_NEAR(steady(2), car.roll.gradient * lateral, 1e-9);
+}
+
 }  // namespace
 }  // namespace veridyn::vehicle

@@ -321,8 +321,7 @@ class Estimation {
     // The prior's own error is one of them.
     const double weight = problem_.samples_per_independent_one();
     const auto unknowns = problem_.shared_unknowns();
-    for (Index i = 0; i < filling.rows(); ++i)
-      filling(i, i) += weight * std::pow(problem_.prior_root(*unknowns[i]), 2);
+    for (Index i = 0; i < filling.rows(); ++i) filling(i, i) += weight * std::pow(problem_.prior_root(*unknowns[i]), 2);
     result_.degrees_of_freedom = std::min(result_.degrees_of_freedom, spectrum.degrees_of_freedom);
     result_.lag_window = spectrum.window;
     return white * filling * white;

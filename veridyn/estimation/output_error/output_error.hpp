@@ -41,7 +41,8 @@ struct OutputErrorOptions {
   /// Error bars: inverse information (kWhite: Cramer-Rao, too small when the model is incomplete) or corrected for the
   /// autocorrelation of the residuals (kAutocorrelated, the default).
   CovarianceKind covariance = CovarianceKind::kAutocorrelated;
-  /// Take what is coloured in the residual for an error of the model: see `output_error`.
+  /// Take what is coloured in the residual for an error of the model, which is as large along the parameters as in any
+  /// direction beside: see `output_error`.
   bool model_error = false;
   bool free_initial_conditions = true;          ///< estimate the initial conditions of every segment
   std::vector<std::string> output_biases = {};  ///< outputs with a constant bias per segment, estimated
@@ -103,9 +104,9 @@ struct OutputErrorEstimate {
   Eigen::VectorXd theta;              ///< their values
   Eigen::MatrixXd covariance;         ///< of the chosen kind; 0 for fixed, infinite variance for not identifiable ones
   Eigen::MatrixXd covariance_by_model;  ///< what an error of the model adds, with `model_error`; 0 without
-  Eigen::MatrixXd covariance_white;   ///< inverse information (Cramer-Rao bound)
-  double degrees_of_freedom = 0.0;    ///< of the t-tests
-  Eigen::Index lag_window = 0;        ///< lags at which residual correlation counts in full [samples]
+  Eigen::MatrixXd covariance_white;     ///< inverse information (Cramer-Rao bound)
+  double degrees_of_freedom = 0.0;      ///< of the t-tests
+  Eigen::Index lag_window = 0;          ///< lags at which residual correlation counts in full [samples]
   std::vector<SegmentParameter> segment_parameters;
   Eigen::MatrixXd noise_covariance;  ///< R
   std::vector<OutputFit> outputs;
@@ -137,7 +138,9 @@ struct OutputErrorEstimate {
   }
   [[nodiscard]] const Parameter* find(std::string_view name) const;
   /// Of noise and of the model's error.
-  [[nodiscard]] Eigen::MatrixXd total_covariance() const { return covariance + covariance_by_model; }
+  [[nodiscard]] Eigen::MatrixXd total_covariance() const {
+    return covariance_by_model.size() > 0 ? Eigen::MatrixXd(covariance + covariance_by_model) : covariance;
+  }
 };
 
 /// Output-error maximum likelihood (Klein & Morelli 2006, chapter 6): z_k = y_k(theta) + nu_k, nu ~ N(0, R), minimises
@@ -155,6 +158,12 @@ struct OutputErrorEstimate {
 /// Covariance: P = (sum S' R^-1 S + prior)^-1 (white), and P [sum_ij S_i' R^-1 Rnu(i-j) R^-1 S_j] P (Morelli & Klein
 /// 1997, J. Guidance 20(1), eq. 14) with Rnu the residuals' auto- and cross-covariance under a flat-top lag window; S
 /// with the part that the segment's own unknowns explain taken out.
+///
+/// With `model_error` the likelihood is taken to the power 1/D against priors that count in full, and (D - 1) P S'R^-1S
+/// P is added to the covariance: D = 1 + E/p with E the coloured power of the whitened residual (its autocovariance over
+/// the next five samples, what exceeds two standard errors of white noise) and p the number of shared unknowns. A
+/// coarsened posterior (Miller & Dunson 2019, J. American Statistical Association 114) whose power is that of what the
+/// model misses: the samples are as wrong along the p parameters as they show to be beside.
 /// @throws InputError when sizes do not fit or an option is wrong.
 [[nodiscard]] OutputErrorEstimate output_error(const ParametricModel& model, const std::vector<RowMatrix>& measured,
                                                const OutputErrorOptions& options = {});

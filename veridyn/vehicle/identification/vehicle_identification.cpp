@@ -7,10 +7,10 @@
 
 #include "veridyn/core/finishing_progress.hpp"
 #include "veridyn/vehicle/identification/evidence/drive_evidence.hpp"
-#include "veridyn/vehicle/identification/evidence/model_error.hpp"
 #include "veridyn/vehicle/identification/evidence/vehicle_plausibility.hpp"
 #include "veridyn/vehicle/identification/fit/corrected_signals.hpp"
 #include "veridyn/vehicle/identification/fit/estimated_vehicle.hpp"
+#include "veridyn/vehicle/identification/fit/interval_parts.hpp"
 #include "veridyn/vehicle/identification/fit/vehicle_estimates.hpp"
 #include "veridyn/vehicle/identification/fit/vehicle_profiles.hpp"
 #include "veridyn/vehicle/identification/judgement/vehicle_judgement.hpp"
@@ -97,15 +97,8 @@ VehicleIdentification identify_structure(const VehicleProblem& problem,
   if (output_error == nullptr || out.chosen != VehicleMethod::kOutputError) unfinished.converged = true;
   finishing.stage(unfinished.empty() ? "validating on the hold-out"
                                      : "interrupted: validating the best estimate so far (Ctrl-C again ends at once)");
-  double model_error = 1.0;
-  if (output_error != nullptr && is_noise_free(problem.signals, problem.segments.identification))
-    model_error = model_error_factor(output_error->raw, problem.signals, problem.segments.identification);
-  for (VehicleEstimate& e : out.estimates)
-    if (e.method == VehicleMethod::kOutputError)
-      e = with_model_error(std::move(e), model_error, problem.options.significance);
   std::optional<PartsAgreement> parts;
-  if (!progress.interrupted())
-    parts = compare_parts(problem, out.chosen, by_regression, output_error, model_error, progress);
+  if (!progress.interrupted()) parts = compare_parts(problem, out.chosen, by_regression, output_error, progress);
   if (progress.interrupted() && !parts) unfinished.left_out.emplace_back("parts of the drive were not compared");
   DriveTheta theta = theta_of(problem, *out.best(), out.output_error ? &*out.output_error : nullptr, finishing);
   const double widening = variance_factor(parts);
@@ -137,7 +130,6 @@ VehicleIdentification identify_structure(const VehicleProblem& problem,
                                                        .parts = parts,
                                                        .delay = ladder.delay,
                                                        .structure_doubts = out.structure_doubts,
-                                                       .model_error = model_error,
                                                        .unfinished = unfinished,
                                                        .further = more});
   out.verdict = judgement.verdict;
@@ -166,8 +158,8 @@ VehicleIdentification identify_parameters(const VehicleProblem& problem, Progres
   const bool corrects = problem.options.method.value_or(VehicleMethod::kOutputError) == VehicleMethod::kOutputError;
   if (equation_error && corrects && !ladder.empty() && ladder.fit.raw.usable() && !progress.interrupted()) {
     const DriveSignals corrected = corrected_signals(problem.signals, ladder.fit.raw.theta);
-    equation_error = estimate_by_equation_error({corrected, problem.segments, problem.start, problem.signal_options,
-                                                 problem.options, problem.recording});
+    equation_error = estimate_by_equation_error(
+        {corrected, problem.segments, problem.start, problem.signal_options, problem.options, problem.recording});
   }
   VehicleIdentifyOptions options = problem.options;
   if (!ladder.empty()) options.model = ladder.model;
@@ -231,6 +223,17 @@ estimation::Estimate make_vehicle_estimate(const VehicleIdentification& identifi
   if (!identification.structure_doubts.empty())
     for (const Parameter& p : out.parameters)
       out.fit[p.name + ".structure_doubt"] = doubt_of(identification.structure_doubts, p.name);
+  if (identification.output_error && identification.chosen == VehicleMethod::kOutputError) {
+    for (const Parameter& p : out.parameters) {
+      const auto unknown = std::ranges::find(kDriveUnknownNames, p.name);
+      if (unknown == kDriveUnknownNames.end() || !std::isfinite(p.sigma)) continue;
+      const IntervalParts parts =
+          interval_parts(*identification.output_error, static_cast<DriveUnknown>(unknown - kDriveUnknownNames.begin()));
+      out.fit[p.name + ".by_noise"] = parts.by_noise;
+      out.fit[p.name + ".by_budget"] = parts.by_budget;
+      out.fit[p.name + ".by_model"] = parts.by_model;
+    }
+  }
   if (identification.output_error)
     for (const estimation::SegmentParameter& p : identification.output_error->segment_parameters)
       if (p.name == kSegmentBank) out.fit[fmt::format("{}.segment_{}", kSegmentBank, p.segment + 1)] = p.value;

@@ -215,7 +215,7 @@ TEST(DriveParametricModel, WhiteningTakesTheColourOfTheSteeringsNoiseOut) {
   }
 }
 
-TEST(DriveParametricModel, HasNoFilterWhereTheResidualIsWhiteOrDelayed) {
+TEST(DriveParametricModel, HasNoFilterWhereTheResidualIsWhiteOrSmoothed) {
   const std::vector<TimeSpan> spans{{4.0, 8.0}};
   const auto filter = [&](const DriveSignals& signals, const DriveModelOptions& options) {
     const DriveParametricModel model(signals, spans, family_car(), options);
@@ -223,9 +223,6 @@ TEST(DriveParametricModel, HasNoFilterWhereTheResidualIsWhiteOrDelayed) {
   };
   const DriveSignals noisy = rolling_signals(reference_drive_sensors());
   EXPECT_FALSE(filter(noisy, {}).empty());
-  DriveModelOptions delayed;
-  delayed.free[DriveUnknown::kYawRateDelay] = true;
-  EXPECT_TRUE(filter(noisy, delayed).empty());
   DriveModelOptions smoothed;
   smoothed.smoothing_Hz = 4.0;
   EXPECT_TRUE(filter(noisy, smoothed).empty());

@@ -10,8 +10,10 @@
 
 #include "tests/support/refusal.hpp"
 #include "tests/vehicle/simulated_drive.hpp"
+#include "veridyn/core/error.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/core/study_keys.hpp"
+#include "veridyn/vehicle/identification/options/drive_budget.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -44,7 +46,7 @@ TEST(DriveModelOptions, TakeFromTheVehicleWhatIsNotGiven) {
   EXPECT_NEAR(o.start[DriveUnknown::kRollGradient], 5.0 * kDegree / kGravity, 1e-5);
   EXPECT_NEAR(o.prior[DriveUnknown::kRollGradient], 0.5 * o.start[DriveUnknown::kRollGradient], 1e-15);
   EXPECT_NEAR(o.start[DriveUnknown::kRollArm], 0.85 * car.cg_height, 1e-15);
-  EXPECT_NEAR(o.prior[DriveUnknown::kRollArm], 0.25 * car.cg_height, 1e-15);
+  EXPECT_NEAR(o.prior[DriveUnknown::kRollArm], 0.4 * car.cg_height, 1e-15);
   EXPECT_NEAR(o.start[DriveUnknown::kRelaxationLength], 0.12 * 2.7, 1e-15);
   EXPECT_NEAR(o.prior[DriveUnknown::kRelaxationLength], 0.06 * 2.7, 1e-15);
   for (const DriveUnknown u : kAllDriveUnknowns) {
@@ -115,16 +117,18 @@ TEST(DriveModelOptions, FreeTheUnknownsOfTheStructureAndNoOthers) {
     return names;
   };
   EXPECT_EQ(freed(DriveStructure::kScaledAccel), "accel_y_scale ");
-  EXPECT_EQ(freed(DriveStructure::kRoll), "roll_gradient roll_arm roll_frequency roll_damping ");
+  EXPECT_EQ(freed(DriveStructure::kRoll),
+            "roll_gradient roll_arm roll_frequency roll_damping roll_steer_f roll_steer_r ");
   EXPECT_EQ(freed(DriveStructure::kRelaxation),
-            "roll_gradient roll_arm relaxation_length roll_frequency roll_damping ");
+            "roll_gradient roll_arm relaxation_length roll_frequency roll_damping roll_steer_f roll_steer_r ");
   EXPECT_EQ(
       freed(DriveStructure::kSaturation),
-      "mu roll_gradient roll_arm relaxation_length load_transfer load_transfer_balance roll_frequency roll_damping ");
+      "mu roll_gradient roll_arm relaxation_length load_transfer load_transfer_balance roll_frequency roll_damping "
+      "roll_steer_f roll_steer_r ");
   EXPECT_EQ(with_structure({}, DriveStructure::kSaturation).tyre, kDriveTyre<FialaTyre>);
   EXPECT_EQ(freed(DriveStructure::kMagicFormula),
             "mu C E roll_gradient roll_arm relaxation_length load_transfer_loss load_transfer_balance "
-            "roll_frequency roll_damping ");
+            "roll_frequency roll_damping roll_steer_f roll_steer_r ");
   EXPECT_EQ(with_structure({}, DriveStructure::kMagicFormula).tyre, kDriveTyre<SimpleMagicFormulaTyre>);
 }
 
@@ -136,17 +140,40 @@ TEST(DriveModelOptions, HoldTheUnknownsThatASimplerStructureDoesNotHave) {
   EXPECT_FALSE(roll.free[DriveUnknown::kRelaxationLength]);
   EXPECT_TRUE(roll.free[DriveUnknown::kRollGradient]);
   // What the study frees stays so: it is no structure's.
-  DriveModelOptions with_delay;
-  with_delay.free[DriveUnknown::kSteerDelay] = true;
-  EXPECT_TRUE(with_structure(with_delay, DriveStructure::kRoll).free[DriveUnknown::kSteerDelay]);
+  DriveModelOptions with_scale;
+  with_scale.free[DriveUnknown::kSteerScale] = true;
+  EXPECT_TRUE(with_structure(with_scale, DriveStructure::kRoll).free[DriveUnknown::kSteerScale]);
+}
+
+/// Of the budget: what no structure decides on.
+bool is_free_by_default(DriveUnknown u) {
+  return is_in_budget(u) && u != DriveUnknown::kRollSteerF && u != DriveUnknown::kRollSteerR;
+}
+
+// Errors of sensors are unknowns whatever the study estimates, unless it knows them exactly.
+TEST(DriveModelOptions, HaveTheBudgetFreeUnlessItIsKnown) {
+  for (const DrivePrior& budget : kDriveBudget) {
+    const DriveModelOptions plain = with_structure({}, DriveStructure::kRoll);
+    EXPECT_TRUE(plain.free[budget.unknown]) << kDriveUnknownNames[budget.unknown];
+    EXPECT_EQ(plain.start[budget.unknown], 0.0);
+    EXPECT_EQ(plain.prior[budget.unknown], budget.sigma);
+    const DriveModelOptions known = with_structure(
+        read_options(fmt::format("estimate = [\"C_f\"]\nprior = {{ {} = 0 }}", kDriveUnknownNames[budget.unknown])),
+        DriveStructure::kRoll);
+    EXPECT_FALSE(known.free[budget.unknown]) << kDriveUnknownNames[budget.unknown];
+    EXPECT_TRUE(known.free[DriveUnknown::kCf]);
+  }
+  EXPECT_THROW(read_options("prior = { trail = -1 }"), InputError);
+  EXPECT_THROW(read_options("prior = { steer_bias = 0 }"), InputError);
 }
 
 TEST(DriveModelOptions, ReadWhatIsFreeAndWhereItBegins) {
   const DriveModelOptions o = read_options(
-      "estimate = [\"C_f\", \"steer_delay\"]\nsmoothing = 3\n"
+      "estimate = [\"C_f\", \"yaw_rate_delay\"]\nsmoothing = 3\n"
       "start = { C_f = 5e4, roll_frequency = 8 }\nprior = { steer_bias = \"2 deg\", accel_y_bias = \"none\" }");
   for (const DriveUnknown u : kAllDriveUnknowns)
-    EXPECT_EQ(o.free[u], u == DriveUnknown::kCf || u == DriveUnknown::kSteerDelay) << kDriveUnknownNames[u];
+    EXPECT_EQ(o.free[u], u == DriveUnknown::kCf || u == DriveUnknown::kYawRateDelay || is_free_by_default(u))
+        << kDriveUnknownNames[u];
   EXPECT_EQ(o.smoothing_Hz, 3.0);
   EXPECT_EQ(o.start[DriveUnknown::kCf], 5e4);
   EXPECT_EQ(o.start[DriveUnknown::kRollFrequency], 8.0);

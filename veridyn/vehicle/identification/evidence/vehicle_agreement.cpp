@@ -24,7 +24,7 @@ PartsAgreement compared(const Eigen::VectorXd& here, const Eigen::VectorXd& ther
 }
 
 std::optional<PartsAgreement> by_output_error(const VehicleProblem& problem, const OutputErrorResult& here,
-                                              double model_error, Progress& progress) {
+                                              Progress& progress) {
   VehicleParameters<double> start = problem.start;
   start.C_f = here.raw.theta(0);
   start.C_r = here.raw.theta(1);
@@ -59,7 +59,7 @@ std::optional<PartsAgreement> by_output_error(const VehicleProblem& problem, con
     if (determined(here.raw) && determined(there)) both.push_back(i);
   }
   if (both.empty()) return std::nullopt;
-  const Eigen::MatrixXd covariance = model_error * (here.raw.total_covariance() + there.total_covariance());
+  const Eigen::MatrixXd covariance = here.raw.total_covariance() + there.total_covariance();
   return compared(here.raw.theta(both), there.theta(both), covariance(both, both));
 }
 
@@ -67,11 +67,10 @@ std::optional<PartsAgreement> by_output_error(const VehicleProblem& problem, con
 
 std::optional<PartsAgreement> compare_parts(const VehicleProblem& problem, VehicleMethod chosen,
                                             const EquationErrorEstimates* equation_error,
-                                            const OutputErrorResult* output_error, double model_error,
-                                            Progress& progress) {
+                                            const OutputErrorResult* output_error, Progress& progress) {
   if (problem.segments.holdout.empty()) return std::nullopt;
   if (chosen == VehicleMethod::kOutputError && output_error != nullptr)
-    return by_output_error(problem, *output_error, model_error, progress);
+    return by_output_error(problem, *output_error, progress);
   if (equation_error == nullptr) return std::nullopt;
   const DriveRegressionResult there = regress(problem, problem.segments.holdout, problem.start);
   for (const AxleEstimate& axle : equation_error->regression.axles) {

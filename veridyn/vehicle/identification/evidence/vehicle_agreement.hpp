@@ -17,11 +17,9 @@ struct PartsAgreement {
 
 /// Estimates the vehicle's parameters from the hold-out alone, by the method that was chosen, and compares. Nothing
 /// where there is no hold-out or it gives no estimate. `equation_error` and `output_error` may be null;
-/// `model_error`: by which variances of output error grow (`model_error_factor`).
 [[nodiscard]] std::optional<PartsAgreement> compare_parts(const VehicleProblem& problem, VehicleMethod chosen,
                                                           const EquationErrorEstimates* equation_error,
-                                                          const OutputErrorResult* output_error, double model_error,
-                                                          Progress& progress);
+                                                          const OutputErrorResult* output_error, Progress& progress);
 
 /// By how much variances grow: chi-square over its degrees of freedom, 1 where the error bars explain the scatter
 /// (Birge 1932).

@@ -12,8 +12,7 @@ namespace {
 void shift(std::vector<double>& value, double later, double step) {
   if (value.empty() || later == 0.0) return;
   const std::vector<double> recorded = value;
-  for (std::size_t k = 0; k < value.size(); ++k)
-    value[k] = between(recorded, static_cast<double>(k) + later / step);
+  for (std::size_t k = 0; k < value.size(); ++k) value[k] = between(recorded, static_cast<double>(k) + later / step);
 }
 
 }  // namespace

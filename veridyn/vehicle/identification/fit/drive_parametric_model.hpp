@@ -85,8 +85,9 @@ class DriveParametricModel : public estimation::AutodiffModel<DriveParametricMod
   [[nodiscard]] std::vector<estimation::RowMatrix> measured() const override;
 
   /// The filter that whitens the residual at `theta`, over the speeds of the segments: white noise of the steering as
-  /// it is of the signals, which acts on the outputs of its sample too, and white noise of the outputs. Empty where
-  /// outputs are delayed, smoothed, or the steering has no noise.
+  /// it is of the signals, which acts on the outputs of its sample too, and white noise of the outputs; delays of the
+  /// outputs are left out (any fixed filter leaves parameters without bias). Empty where outputs are smoothed or the
+  /// steering has no noise.
   [[nodiscard]] DriveWhitening whitening(const Eigen::VectorXd& theta) const;
   /// What noise of the steering does to each output: its standard deviation, and in how many samples it is one
   /// observation (variance of the mean of many over that of as many independent ones).

@@ -11,7 +11,7 @@
 #include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/estimation/judgement/limits.hpp"
 #include "veridyn/vehicle/identification/evidence/drive_evidence.hpp"
-#include "veridyn/vehicle/identification/evidence/model_error.hpp"
+#include "veridyn/vehicle/identification/evidence/noise_free.hpp"
 #include "veridyn/vehicle/identification/evidence/vehicle_plausibility.hpp"
 #include "veridyn/vehicle/identification/fit/axle_estimate.hpp"
 #include "veridyn/vehicle/identification/structure/structure_doubt.hpp"
@@ -138,7 +138,7 @@ Evidence by_p(Check check, double p, const VehicleIdentifyOptions& options) {
 
 /// Equation error against output error, where that has all three parameters.
 std::optional<Evidence> check_methods(const VehicleProblem& problem, const AxleEstimate& axle,
-                                      const OutputErrorResult* output_error, double model_error) {
+                                      const OutputErrorResult* output_error) {
   if (output_error == nullptr || !output_error->estimate.usable) return std::nullopt;
   Eigen::Vector3d difference;
   for (std::size_t i = 0; i < kBasicUnknowns.size(); ++i) {
@@ -149,7 +149,7 @@ std::optional<Evidence> check_methods(const VehicleProblem& problem, const AxleE
   // Both come from the same data, so the sum of covariances is more than their difference has: a weak test, but one
   // without false alarms.
   Eigen::Matrix3d covariance = axle.covariance;
-  covariance += model_error * output_error->raw.total_covariance().topLeftCorner(3, 3);
+  covariance += output_error->raw.total_covariance().topLeftCorner(3, 3);
   // Small angles, which only equation error takes.
   covariance.diagonal() += (kSmallAngleError * axle.value).cwiseAbs2();
   return by_p(Check::kMethodsAgree, estimation::agreement_p(difference, covariance), problem.options);
@@ -174,7 +174,7 @@ AgreementChecks check_agreement(const VehicleProblem& problem, const VehicleFind
   const AxleEstimate* axle = regression.find(regression.recommends ? regression.recommended : Method::kGtls);
   if (axle == nullptr || !axle->usable) return checks;
   checks.consistency = by_p(Check::kConsistencyEquation, axle->consistency_p, problem.options);
-  checks.methods = check_methods(problem, *axle, findings.output_error, findings.model_error);
+  checks.methods = check_methods(problem, *axle, findings.output_error);
   return checks;
 }
 

@@ -27,9 +27,8 @@ struct VehicleFindings {
   std::optional<PartsAgreement> parts = {};
   std::optional<DelayByModel> delay = {};                 ///< see StructureLadder
   std::span<const StructureDoubt> structure_doubts = {};  ///< which the intervals of `chosen` have
-  double model_error = 1.0;                      ///< by which variances of output error grow (`model_error_factor`)
-  estimation::UnfinishedSearch unfinished = {};  ///< by an interruption
-  std::span<const estimation::Evidence> further = {};  ///< rows of what else was done with the estimate
+  estimation::UnfinishedSearch unfinished = {};           ///< by an interruption
+  std::span<const estimation::Evidence> further = {};     ///< rows of what else was done with the estimate
 };
 
 /// The verdict on an identified vehicle and what it rests on.

@@ -12,6 +12,7 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/core/study_keys.hpp"
+#include "veridyn/vehicle/identification/options/drive_budget.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -22,10 +23,6 @@ constexpr std::array kRolls{DriveUnknown::kRollGradient,     DriveUnknown::kRoll
                             DriveUnknown::kLoadTransferLoss, DriveUnknown::kLoadTransferBalance,
                             DriveUnknown::kRollSteerF,       DriveUnknown::kRollSteerR};
 constexpr std::array kOfCourse{DriveUnknown::kSideslipBias, DriveUnknown::kCourseDelay};
-/// Of sensors and tyres, the same in all samples: free with their priors in every drive.
-constexpr std::array kBudget{DriveUnknown::kSteerDelay, DriveUnknown::kAccelYDelay, DriveUnknown::kAccelPlace,
-                             DriveUnknown::kTrail};
-constexpr double kRollSteerSigma = 0.05;
 constexpr std::array kOfEffects{DriveUnknown::kDownforceF, DriveUnknown::kDownforceR, DriveUnknown::kLoadSensitivity,
                                 DriveUnknown::kFrontForceShare};
 constexpr std::array kByGeometry{DriveUnknown::kCf,
@@ -39,9 +36,7 @@ constexpr std::array kByGeometry{DriveUnknown::kCf,
                                  DriveUnknown::kRelaxationLength,
                                  DriveUnknown::kLoadTransfer,
                                  DriveUnknown::kLoadTransferLoss,
-                                 DriveUnknown::kLoadTransferBalance,
-                                 DriveUnknown::kRollSteerF,
-                                 DriveUnknown::kRollSteerR};
+                                 DriveUnknown::kLoadTransferBalance};
 
 struct Knowledge {
   double mean = 0.0, sigma = 0.0;
@@ -78,9 +73,6 @@ Knowledge by_geometry(DriveUnknown unknown, const VehicleParameters<double>& veh
       return {0.2, 0.2};
     case DriveUnknown::kLoadTransferBalance:
       return {0.0, 0.4};
-    case DriveUnknown::kRollSteerF:
-    case DriveUnknown::kRollSteerR:
-      return {0.0, kRollSteerSigma};
     default:
       return {0.12 * vehicle.wheelbase(), 0.06 * vehicle.wheelbase()};
   }
@@ -153,13 +145,19 @@ std::pair<double, double> bounds_of(DriveUnknown unknown, double start, double w
   }
 }
 
+/// What is not a structure's, and not known exactly.
+void free_budget(DriveModelOptions& options) {
+  for (const DrivePrior& budget : kDriveBudget)
+    if (std::ranges::find(kRolls, budget.unknown) == kRolls.end())
+      options.free[budget.unknown] = options.prior[budget.unknown] > 0.0;
+}
+
 }  // namespace
 
 DriveModelOptions::DriveModelOptions() {
   for (const DriveUnknown u : {DriveUnknown::kCf, DriveUnknown::kCr, DriveUnknown::kIz, DriveUnknown::kSteerBias,
                                DriveUnknown::kYawRateBias, DriveUnknown::kAccelYBias})
     free[u] = true;
-  for (const DriveUnknown u : kBudget) free[u] = true;
   start.fill(0.0);
   for (const DriveUnknown u : kByGeometry) start[u] = kNaN;
   start[DriveUnknown::kMu] = 1.0;
@@ -173,12 +171,10 @@ DriveModelOptions::DriveModelOptions() {
   for (const DriveUnknown u :
        {DriveUnknown::kSteerDelay, DriveUnknown::kYawRateDelay, DriveUnknown::kAccelYDelay, DriveUnknown::kCourseDelay})
     prior[u] = 0.1;
-  prior[DriveUnknown::kSteerDelay] = 0.03;
-  prior[DriveUnknown::kAccelYDelay] = 0.01;
-  prior[DriveUnknown::kAccelPlace] = 0.3;
-  prior[DriveUnknown::kTrail] = 0.015;
   prior[DriveUnknown::kSideslipBias] = kDegree;
   for (const DriveUnknown u : kRolls) prior[u] = kNaN;
+  for (const DrivePrior& budget : kDriveBudget) prior[budget.unknown] = budget.sigma;
+  free_budget(*this);
   prior[DriveUnknown::kDownforceF] = prior[DriveUnknown::kDownforceR] = kDownforceSigma;
   // Stiffness grows with load by 0.4 to 1 of what it would in proportion (Pacejka 2006, chapter 1).
   start[DriveUnknown::kLoadSensitivity] = 0.0;
@@ -213,7 +209,7 @@ DriveTyre tyre_named(std::string_view name) {
 void read_estimate(const StudyTable& table, const std::string& key, DriveModelOptions& options) {
   const std::vector<std::string> names(kDriveUnknownNames.begin(), kDriveUnknownNames.end());
   options.free.fill(false);
-  for (const DriveUnknown u : kBudget) options.free[u] = true;
+  free_budget(options);
   for (const std::string& name : table.texts(key)) {
     const auto at = std::find(names.begin(), names.end(), name);
     if (at == names.end())
@@ -240,7 +236,13 @@ void read_priors(const StudyTable& priors, DriveModelOptions& options) {
     const std::string_view name = kDriveUnknownNames[u];
     if (!priors.has(name)) continue;
     const bool none = priors.is_text(name) && priors.text(name) == "none";
-    options.prior[u] = none ? kInfinity : priors.positive(name, kDriveUnknownUnits[u]);
+    if (none || !is_in_budget(u)) {
+      options.prior[u] = none ? kInfinity : priors.positive(name, kDriveUnknownUnits[u]);
+      continue;
+    }
+    options.prior[u] = priors.number(name, kDriveUnknownUnits[u]);
+    if (options.prior[u] < 0.0) priors.fail(name, "must be >= 0; 0: known exactly");
+    options.free[u] = options.free[u] && options.prior[u] > 0.0;
   }
 }
 
@@ -260,7 +262,9 @@ const KeyTable<DriveModelOptions>& DriveModelOptions::keys() {
                  })
           .other({"estimate", "", "names of unknowns",
                   "C_f, C_r, I_z, the three biases, and mu and C of tyres that have them",
-                  "what is free beside what structure and effects free; the rest stays at its start", true},
+                  "what is free beside what structure and effects free and what `veridyn priors` lists; the rest stays "
+                  "at its start",
+                  true},
                  read_estimate)
           .number("smoothing", &O::smoothing_Hz, "Hz", kNotNegative,
                   "cut-off of the kernel through which inputs and outputs alike go before they are compared: noise of "
@@ -274,11 +278,13 @@ const KeyTable<DriveModelOptions>& DriveModelOptions::keys() {
                    for (const DriveUnknown u : kAllDriveUnknowns)
                      o.start[u] = starts.number_or(kDriveUnknownNames[u], kDriveUnknownUnits[u], o.start[u]);
                  })
-          .other({"prior", "SI", "by the names of unknowns, or `\"none\"`",
-                  "steer_bias 1 deg, yaw_rate_bias 1 deg/s, accel_y_bias 0.5 m/s^2, scales 0.1, sideslip_bias 1 deg, "
-                  "delays 0.1 s, C 0.2, E 0.5; others by the geometry",
-                  "standard deviation of what is known beforehand", true},
-                 [](const StudyTable& t, const std::string& key, O& o) { read_priors(t.table(key), o); });
+          .other(
+              {"prior", "SI", "by the names of unknowns, or `\"none\"`",
+               "steer_bias 1 deg, yaw_rate_bias 1 deg/s, accel_y_bias 0.5 m/s^2, steer_scale 0.1, accel_y_scale 0.03, "
+               "sideslip_bias 1 deg, yaw_rate_delay and course_delay 0.1 s, C 0.2, E 0.5, what `veridyn priors` "
+               "lists; others by the geometry",
+               "standard deviation of what is known beforehand; of what `veridyn priors` lists 0: known exactly", true},
+              [](const StudyTable& t, const std::string& key, O& o) { read_priors(t.table(key), o); });
   return table;
 }
 
@@ -314,7 +320,7 @@ DriveModelOptions with_course(DriveModelOptions options, bool by_course) {
 DriveModelOptions with_structure(DriveModelOptions options, DriveStructure structure) {
   options.structure = structure;
   if (structure == DriveStructure::kScaledAccel) options.free[DriveUnknown::kAccelYScale] = true;
-  for (const DriveUnknown u : kRolls) options.free[u] = frees(structure, u);
+  for (const DriveUnknown u : kRolls) options.free[u] = frees(structure, u) && options.prior[u] != 0.0;
   if (saturates(structure) && options.tyre == kDriveTyre<LinearTyre>) {
     const bool has_shape = structure == DriveStructure::kMagicFormula;
     options.tyre = has_shape ? kDriveTyre<SimpleMagicFormulaTyre> : kDriveTyre<FialaTyre>;

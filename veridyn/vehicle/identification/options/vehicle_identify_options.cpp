@@ -5,6 +5,7 @@
 
 #include "veridyn/core/study_keys.hpp"
 #include "veridyn/estimation/uncertainty/profile_choice.hpp"
+#include "veridyn/vehicle/identification/options/drive_budget.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -45,8 +46,8 @@ void complete(const StudyTable& table, O& o) {
   if (o.structure) o.model = with_structure(o.model, *o.structure);
   if (o.effects) o.model = with_effects(o.model, *o.effects);
   std::vector<std::string> free;
-  for (std::size_t i = 0; i < kDriveUnknowns; ++i)
-    if (o.model.free[i]) free.emplace_back(kDriveUnknownNames[i]);
+  for (const DriveUnknown u : kAllDriveUnknowns)
+    if (o.model.free[u] && !is_in_budget(u)) free.emplace_back(kDriveUnknownNames[u]);
   o.profiles = estimation::read_profiles(table, free);
   if (!o.profiles.empty() && !o.output_error)
     table.fail("profiles", "are of the output error, which output_error = false leaves out");

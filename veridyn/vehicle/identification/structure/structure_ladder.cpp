@@ -10,7 +10,6 @@
 #include "veridyn/core/index.hpp"
 #include "veridyn/numerics/linear_algebra/cholesky.hpp"
 #include "veridyn/vehicle/identification/evidence/drive_evidence.hpp"
-#include "veridyn/vehicle/identification/evidence/model_error.hpp"
 #include "veridyn/vehicle/identification/structure/drive_effects.hpp"
 #include "veridyn/vehicle/identification/structure/structure_doubt.hpp"
 #include "veridyn/vehicle/identification/validation/vehicle_prediction.hpp"

@@ -1,12 +1,9 @@
-#include "veridyn/vehicle/identification/evidence/model_error.hpp"
+#include "veridyn/vehicle/identification/evidence/noise_free.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
-
-#include "veridyn/core/index.hpp"
-#include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -40,31 +37,6 @@ bool is_noise_free(const DriveSignals& signals, std::span<const TimeSpan> spans)
         if (!s.available()) return optional;
         return s.sigma < kLeastNoise * deviation_of(signals, s.value, spans);
       });
-}
-
-double model_error_factor(const estimation::OutputErrorEstimate& fit, const DriveSignals& signals,
-                          std::span<const TimeSpan> spans) {
-  double samples = 0.0;
-  for (const TimeSpan& span : spans) {
-    const auto [first, last] = signals.indices(span);
-    samples += static_cast<double>(last - first);
-  }
-  return std::max(1.0, samples / fit.autocorrelation);
-}
-
-VehicleEstimate with_model_error(VehicleEstimate estimate, double factor, double significance) {
-  if (!(factor > 1.0)) return estimate;
-  const Eigen::VectorXd before = estimate.covariance.diagonal();
-  Eigen::MatrixXd error = (factor - 1.0) * estimate.covariance;
-  if (estimate.given_covariance.size() > 0) error -= (factor - 1.0) * estimate.given_covariance;
-  estimate.covariance += error;
-  estimate.given_covariance = estimate.given_covariance.size() > 0 ? estimate.given_covariance + error : error;
-  for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
-    const double ratio = estimate.covariance.diagonal()(signed_index(i)) / before(signed_index(i));
-    if (std::isfinite(ratio))
-      estimation::widen(estimate.parameters[i], ratio, estimate.degrees_of_freedom, significance);
-  }
-  return estimate;
 }
 
 }  // namespace veridyn::vehicle

@@ -1,4 +1,4 @@
-#include "veridyn/vehicle/identification/evidence/model_error.hpp"
+#include "veridyn/vehicle/identification/evidence/noise_free.hpp"
 
 #include <gtest/gtest.h>
 
@@ -35,26 +35,6 @@ TEST(NoiseFree, IsLessThanAThousandthOfTheSignal) {
   DriveSignals noisy_steering = with_noise(2e-8);
   noisy_steering[DriveSignal::kSteer].sigma = 1e-3;
   EXPECT_FALSE(is_noise_free(noisy_steering, whole));
-}
-
-TEST(ModelError, IsTheSameInAllSamples) {
-  VehicleEstimate estimate;
-  estimate.degrees_of_freedom = 100.0;
-  estimate.parameters = {{.name = "C_f", .value = 100.0, .sigma = 5.0, .low95 = 90.0, .high95 = 110.0}};
-  estimate.covariance = Eigen::MatrixXd::Constant(1, 1, 25.0);
-  estimate.given_covariance = Eigen::MatrixXd::Constant(1, 1, 16.0);  // 9 are the drive's
-  const VehicleEstimate wide = with_model_error(estimate, 4.0, 0.05);
-  EXPECT_NEAR(wide.covariance(0, 0), 4.0 * 9.0 + 16.0, 1e-12);
-  EXPECT_NEAR(wide.given_covariance(0, 0), 3.0 * 9.0 + 16.0, 1e-12);
-  EXPECT_NEAR(wide.parameters[0].sigma, std::sqrt(52.0), 1e-12);
-  EXPECT_EQ(with_model_error(estimate, 1.0, 0.05).covariance(0, 0), 25.0);
-}
-
-TEST(ModelError, MakesOfWhiteNoiseOneErrorForAllSamples) {
-  estimation::OutputErrorEstimate fit;
-  fit.parameters = {{.name = "C_f", .sigma = 20.0, .sigma_white = 10.0}};
-  EXPECT_EQ(variance_inflation(fit), 4.0);
-  EXPECT_EQ(model_error_factor(fit, with_noise(0.0), std::vector<TimeSpan>{{0.0, 7.99}}), 200.0);
 }
 
 /// The recording of a simulated car whose body rolls, without noise.

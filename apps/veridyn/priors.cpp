@@ -1,0 +1,66 @@
+// veridyn priors: what is taken of errors that are the same in all samples, before a recording says anything of them.
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+#include "apps/veridyn/run/console.hpp"
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/nearest.hpp"
+#include "veridyn/vehicle/identification/options/drive_budget.hpp"
+
+namespace veridyn::app {
+namespace {
+
+/// One unknown, with a mean of 0.
+struct Prior {
+  std::string key;  ///< of a study
+  double sigma = 0.0;
+  std::string unit, meaning, source;
+};
+
+std::vector<Prior> of_vehicle() {
+  std::vector<Prior> priors;
+  for (const vehicle::DrivePrior& p : vehicle::kDriveBudget)
+    priors.push_back({fmt::format("identify.prior.{}", vehicle::kDriveUnknownNames[p.unknown]), p.sigma,
+                      std::string(vehicle::kDriveUnknownUnits[p.unknown]), std::string(p.meaning),
+                      std::string(p.source)});
+  return priors;
+}
+
+std::vector<Prior> priors_of(const std::string& kind) {
+  if (kind == "vehicle") return of_vehicle();
+  const std::vector<std::string> names{"vehicle"};
+  throw InputError("priors", fmt::format("there are none of '{}'{}", kind, suggestion(kind, names)));
+}
+
+int priors(const Arguments& arguments) {
+  std::string text = "| unknown | meaning | standard deviation | source |\n| --- | --- | --- | --- |\n";
+  Summary all = Summary::array();
+  for (const Prior& p : priors_of(arguments.text("KIND"))) {
+    text += fmt::format("| `{}` | {} | {:g}{} | {} |\n", p.key, p.meaning, p.sigma, p.unit == "1" ? "" : " " + p.unit,
+                        p.source);
+    all.push_back(Summary::object(
+        {{"key", p.key}, {"meaning", p.meaning}, {"sigma", p.sigma}, {"unit", p.unit}, {"source", p.source}}));
+  }
+  if (arguments.common.json) {
+    Summary summary = Summary::object();
+    summary["priors"] = std::move(all);
+    print_summary(summary, arguments.common);
+  } else {
+    print_text(text);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+Command priors_command() {
+  return {.name = "priors",
+          .summary = "what is taken of errors of sensors and models before a recording says anything of them",
+          .arguments = {{.name = "KIND", .help = "what the study is about: vehicle", .type = "TEXT", .required = true}},
+          .example = "veridyn priors vehicle",
+          .run = priors};
+}
+
+}  // namespace veridyn::app

@@ -1,0 +1,95 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <cmath>
+#include <random>
+
+#include "tests/estimation/output_error/example_models.hpp"
+#include "veridyn/estimation/output_error/output_error.hpp"
+
+/// `OutputErrorOptions::model_error`: what a model lacks follows the motion, and hides along its parameters.
+namespace veridyn::estimation {
+namespace {
+
+using namespace testing_support;
+
+constexpr Index kSamples = 2000;
+constexpr double kNoise = 0.05;
+
+/// Slow motion: two regressors of unit variance.
+RowMatrix motion(std::mt19937_64& generator) {
+  RowMatrix X(kSamples, 2);
+  for (Index j = 0; j < 2; ++j) {
+    X.col(j) = correlated_noise(generator, kSamples, 0.98);
+    X.col(j) /= std::sqrt(X.col(j).squaredNorm() / kSamples);
+  }
+  return X;
+}
+
+VectorXd white_noise(std::mt19937_64& generator) {
+  std::normal_distribution<double> normal(0.0, kNoise);
+  return VectorXd::NullaryExpr(kSamples, [&] { return normal(generator); });
+}
+
+OutputErrorEstimate estimated(const RowMatrix& X, const VectorXd& z, bool model_error) {
+  OutputErrorOptions options;
+  options.model_error = model_error;
+  const Static model({{X}});
+  return output_error(model, {RowMatrix(z)}, options);
+}
+
+TEST(ModelError, AddsNothingWhereTheResidualIsWhite) {
+  std::mt19937_64 generator(5);
+  int widened = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    const RowMatrix X = motion(generator);
+    const VectorXd z = X * Eigen::Vector2d(1.0, -0.5) + white_noise(generator);
+    const OutputErrorEstimate e = estimated(X, z, true);
+    ASSERT_TRUE(e.usable()) << e.message;
+    if (e.covariance_by_model(0, 0) > 0.0) ++widened;
+    EXPECT_LT(e.covariance_by_model(0, 0), 40.0 * e.covariance(0, 0));
+  }
+  // Two standard errors: once in forty.
+  EXPECT_LE(widened, 5);
+}
+
+// A gain that falls with the motion, as of a tyre that saturates: 1 - 0.05 x^2 of a slope of one.
+TEST(ModelError, IsInTheIntervalsWhereAGainFallsWithTheMotion) {
+  std::mt19937_64 generator(6);
+  constexpr int trials = 40;
+  int inside = 0, inside_without = 0;
+  for (int trial = 0; trial < trials; ++trial) {
+    const RowMatrix X = motion(generator);
+    VectorXd z = X * Eigen::Vector2d(1.0, -0.5) + white_noise(generator);
+    z.array() -= 0.05 * X.col(0).array().cube();
+    for (const bool model_error : {false, true}) {
+      const OutputErrorEstimate e = estimated(X, z, model_error);
+      ASSERT_TRUE(e.usable()) << e.message;
+      const bool holds = e.parameters[0].low95 <= 1.0 && 1.0 <= e.parameters[0].high95;
+      (model_error ? inside : inside_without) += holds ? 1 : 0;
+    }
+  }
+  EXPECT_LE(inside_without, trials / 4);
+  EXPECT_GE(inside, trials * 9 / 10);
+}
+
+// Data that the model does not explain count for less against what is known before.
+TEST(ModelError, LetsPriorsCountForMore) {
+  std::mt19937_64 generator(7);
+  const RowMatrix X = motion(generator);
+  VectorXd z = X * Eigen::Vector2d(1.0, -0.5) + white_noise(generator);
+  z.array() -= 0.05 * X.col(0).array().cube();
+  Static model({{X}});
+  model.unknowns[0].start = 1.0;
+  model.unknowns[0].prior_sigma = 0.02;
+  OutputErrorOptions options;
+  const double plain = output_error(model, {RowMatrix(z)}, options).theta(0);
+  options.model_error = true;
+  const OutputErrorEstimate e = output_error(model, {RowMatrix(z)}, options);
+  EXPECT_LT(std::abs(e.theta(0) - 1.0), 0.5 * std::abs(plain - 1.0));
+  EXPECT_LE(e.parameters[0].sigma, 0.021);
+  EXPECT_GT(e.parameters[0].sigma, 0.01);
+}
+
+}  // namespace
+}  // namespace veridyn::estimation
