@@ -53,15 +53,17 @@ TEST(ModelError, AddsNothingWhereTheResidualIsWhite) {
   EXPECT_LE(widened, 5);
 }
 
-// A gain that falls with the motion, as of a tyre that saturates: 1 - 0.05 x^2 of a slope of one.
-TEST(ModelError, IsInTheIntervalsWhereAGainFallsWithTheMotion) {
+// A third motion that the model lacks goes half with the first: 0.05 of a slope of one, where white noise leaves 0.001.
+// (Not all of an error need show: of a gain that falls as 1 - 0.05 x^2 more is absorbed by the slope than is left, and
+// 15 of 40 intervals hold it.)
+TEST(ModelError, IsInTheIntervalsWhereAMotionIsMissing) {
   std::mt19937_64 generator(6);
   constexpr int trials = 40;
   int inside = 0, inside_without = 0;
   for (int trial = 0; trial < trials; ++trial) {
     const RowMatrix X = motion(generator);
-    VectorXd z = X * Eigen::Vector2d(1.0, -0.5) + white_noise(generator);
-    z.array() -= 0.05 * X.col(0).array().cube();
+    const VectorXd missing = 0.5 * X.col(0) + std::sqrt(0.75) * motion(generator).col(0);
+    const VectorXd z = X * Eigen::Vector2d(1.0, -0.5) + 0.1 * missing + white_noise(generator);
     for (const bool model_error : {false, true}) {
       const OutputErrorEstimate e = estimated(X, z, model_error);
       ASSERT_TRUE(e.usable()) << e.message;
@@ -69,7 +71,7 @@ TEST(ModelError, IsInTheIntervalsWhereAGainFallsWithTheMotion) {
       (model_error ? inside : inside_without) += holds ? 1 : 0;
     }
   }
-  EXPECT_LE(inside_without, trials / 4);
+  EXPECT_LE(inside_without, trials / 2);
   EXPECT_GE(inside, trials * 9 / 10);
 }
 

@@ -10,18 +10,18 @@
 namespace veridyn::vehicle {
 namespace {
 
-constexpr double kStep = 0.01;
+constexpr double kGridStep = 0.01;
 
 /// sin(2 t - phase) on the grid.
 std::vector<double> wave(double late_s) {
   std::vector<double> out;
-  for (int k = 0; k < 500; ++k) out.push_back(std::sin(2.0 * (k * kStep - late_s)));
+  for (int k = 0; k < 500; ++k) out.push_back(std::sin(2.0 * (k * kGridStep - late_s)));
   return out;
 }
 
 TEST(CorrectedSignals, AreInTheTimeOfTheWheelsAndAtTheAccelerometersPlace) {
   DriveSignals recorded;
-  recorded.grid = {.begin = 0.0, .step = kStep, .count = 500};
+  recorded.grid = {.begin = 0.0, .step = kGridStep, .count = 500};
   recorded.accel_position = {0.2, 0.0, 0.1};
   recorded[DriveSignal::kSteer].value = wave(0.025);  // late, so that the wheels answer it early
   recorded[DriveSignal::kYawRate].value = wave(0.0);
