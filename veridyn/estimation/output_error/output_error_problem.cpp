@@ -333,7 +333,8 @@ std::vector<int> OutputErrorProblem::pressed_on_bounds() const {
 }
 
 double OutputErrorProblem::largest_change_in_sigma(const Eigen::VectorXd& before) const {
-  return shared_.size() > 0 ? (shared_root() * (shared_ - before)).norm() : 0.0;
+  // Samples that say less leave larger ones.
+  return shared_.size() > 0 ? (shared_root() * (shared_ - before)).norm() / std::sqrt(discount_) : 0.0;
 }
 
 RowMatrix OutputErrorProblem::shared_root() const {

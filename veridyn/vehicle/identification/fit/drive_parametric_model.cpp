@@ -386,14 +386,15 @@ bool DriveParametricModel::simulate(std::size_t segment, const Parameters<Scalar
   return simulate(segments_[segment], theta, Extent::kWhole, output);
 }
 
-bool DriveParametricModel::simulate_transient(std::size_t segment, const Parameters<ceres::Jet<double, 8>>& theta,
-                                              Outputs<ceres::Jet<double, 8>>& output) const {
+bool DriveParametricModel::simulate_transient(std::size_t segment,
+                                              const Parameters<ceres::Jet<double, kDriveStride>>& theta,
+                                              Outputs<ceres::Jet<double, kDriveStride>>& output) const {
   return simulate(segments_[segment], theta, Extent::kTransient, output);
 }
 
 template bool DriveParametricModel::simulate(std::size_t, const Parameters<double>&, Outputs<double>&) const;
-template bool DriveParametricModel::simulate(std::size_t, const Parameters<ceres::Jet<double, 8>>&,
-                                             Outputs<ceres::Jet<double, 8>>&) const;
+template bool DriveParametricModel::simulate(std::size_t, const Parameters<ceres::Jet<double, kDriveStride>>&,
+                                             Outputs<ceres::Jet<double, kDriveStride>>&) const;
 
 LinearDrive DriveParametricModel::linearized(double u, const Eigen::VectorXd& theta) const {
   const auto outputs = signed_index(compared_.size());

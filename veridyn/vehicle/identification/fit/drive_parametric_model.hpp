@@ -23,6 +23,9 @@ inline constexpr std::string_view kSegmentBank = "bank";
 /// Below it the derivative of the recorded speed moves loads: bodies pitch as slowly.
 inline constexpr double kPedalBand_Hz = 2.0;
 
+/// Unknowns whose derivatives one simulation gives: a bicycle has ten, and two of its beginning.
+inline constexpr int kDriveStride = 12;
+
 /// The drive as a parametric model for output error: a `RollingBicycle` (exact geometry) driven by measured steering
 /// and speed, with the states of each segment's beginning as further unknowns: lateral velocity and yaw rate, and of
 /// roll, roll rate and lagging slips what they differ by from steady cornering. (Were they taken as steady, a
@@ -49,7 +52,8 @@ inline constexpr double kPedalBand_Hz = 2.0;
 ///
 /// What the model leaves out shows as autocorrelation of the residual: load transfer, compliance of the steering
 /// (`steer_scale`, indistinguishable from C_f). Diverged: |v| above 2 u, |r| above 50 rad/s.
-class DriveParametricModel : public estimation::AutodiffModel<DriveParametricModel, 8, estimation::OpenLoopModel> {
+class DriveParametricModel
+    : public estimation::AutodiffModel<DriveParametricModel, kDriveStride, estimation::OpenLoopModel> {
  public:
   /// All DriveUnknowns, then the initial conditions of the segment.
   template <typename Scalar>
@@ -100,12 +104,12 @@ class DriveParametricModel : public estimation::AutodiffModel<DriveParametricMod
   /// The model whose outputs, and what is compared with them, go through a filter.
   [[nodiscard]] DriveParametricModel weighed(DriveWhitening whitening) const;
 
-  /// Fills `output`; false where the motion diverged. Compiled for double and Jets of 8.
+  /// Fills `output`; false where the motion diverged. Compiled for double and Jets.
   template <typename Scalar>
   bool simulate(std::size_t segment, const Parameters<Scalar>& theta, Outputs<Scalar>& output) const;
   /// Derivatives with respect to initial conditions, which are forgotten within seconds.
-  bool simulate_transient(std::size_t segment, const Parameters<ceres::Jet<double, 8>>& theta,
-                          Outputs<ceres::Jet<double, 8>>& output) const;
+  bool simulate_transient(std::size_t segment, const Parameters<ceres::Jet<double, kDriveStride>>& theta,
+                          Outputs<ceres::Jet<double, kDriveStride>>& output) const;
 
  private:
   /// How far a drive is simulated.
