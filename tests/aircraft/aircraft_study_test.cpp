@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "tests/aircraft/exact_sensors.hpp"
 #include "tests/aircraft/simulated_flight.hpp"
 #include "tests/aircraft/stripped_recording.hpp"
 #include "tests/support/refusal.hpp"
@@ -91,10 +92,11 @@ Recording flown_without_rudder() {
 // rejected.
 TEST(AircraftStudy, ASurfaceThatIsZeroThroughoutRejectsNothing) {
   Progress silent;
-  FlightStudy study = calm_study(150.0, "");
+  FlightStudy study = aircraft::testing::with_exact_sensors(calm_study(150.0, ""));
   study.mapped.recording = flown_without_rudder();
   const FlightAnalysis analysis = identify(study, silent);
-  EXPECT_EQ(identified_in(analysis), (std::vector<std::string>{"CL", "CD", "CY", "Cm"}));
+  EXPECT_EQ(identified_in(analysis), (std::vector<std::string>{"CL", "CD", "CY", "Cm"}))
+      << analysis.coefficients[2].reason;
   for (const CoefficientResult& r : analysis.coefficients)
     EXPECT_NE(r.verdict, estimation::GroupVerdict::kRejected) << r.reason;
   for (const char* name : {"CY_dr", "Cl_dr", "Cn_dr"}) {

@@ -91,6 +91,22 @@ TEST(GridSignals, NoiseFloorIsThatOfTheWhiteNoiseUnderATailOfTheSignal) {
   EXPECT_EQ(noise_floor(channel({0.0}, {1.0})), 0.0);
 }
 
+// Between two samples there is less noise than at either, so that values interpolated over lost rows show too little.
+TEST(GridSignals, NoiseFloorIsThatOfTheSamplesWhereverTheirStampsAre) {
+  numerics::RandomStream random(5, "noise");
+  std::vector<double> stamps, values, kept_stamps, kept;
+  for (std::size_t k = 0; k < 12000; ++k) {
+    const double t = 0.0043 + 0.01 * static_cast<double>(k);
+    stamps.push_back(t);
+    values.push_back(0.3 * std::sin(4.0 * t) + 0.02 * random.normal());
+    if (random.uniform() < 0.2) continue;
+    kept_stamps.push_back(t);
+    kept.push_back(values.back());
+  }
+  EXPECT_NEAR(noise_floor(channel(stamps, values)), 0.02, 0.001);
+  EXPECT_NEAR(noise_floor(channel(kept_stamps, kept)), 0.02, 0.001);
+}
+
 TEST(GridSignals, GivenNoiseIsReadByStandardNameAndInItsUnit) {
   const std::vector<StandardChannel> known{{"alpha", "rad"}, {"gyro_x", "rad/s"}};
   const Study study = Study::parse("[noise]\nalpha = '1 deg'\n", "study.toml", ".");

@@ -11,7 +11,7 @@ std::vector<StudyKeys> study_keys() {
   return all_of(subject_keys(), FlightDataKeys::keys(), DelayAlignment::keys(), ReconstructOptions::keys(),
                 SignalOptions::keys(), SegmentOptions::keys(), IdentifyOptions::keys(), ValidationOptions::keys(),
                 TrackOptions::keys(), UncertaintyOptions::keys(), SimulationOptions::keys(), sensor_keys(),
-                FlightSensitivityOptions::keys());
+                known_sensor_keys(), FlightSensitivityOptions::keys());
 }
 
 std::vector<StudyKeys> swing_test_keys() { return all_of(SwingTest::keys()); }

@@ -8,6 +8,7 @@
 
 #include "veridyn/aircraft/identification/evidence/contradicted_flight.hpp"
 #include "veridyn/aircraft/identification/evidence/recording_evidence.hpp"
+#include "veridyn/aircraft/identification/fit/flight_delays.hpp"
 #include "veridyn/aircraft/identification/identified_estimate.hpp"
 #include "veridyn/aircraft/identification/parameter_groups.hpp"
 #include "veridyn/aircraft/identification/rows/flight_set.hpp"
@@ -118,10 +119,15 @@ PreparedFlight prepared(const FlightStudy& study, Progress& progress) {
   if (flight.reconstruction.interrupted) return flight;
   if (flight.usable()) {
     const bool data_sheet = options.sensors == NoiseSource::kReference;
-    flight.signals = prepare_signals(
-        flight.aligned, flight.reconstruction.smoothed, flow_sensors(options, flight.reconstruction.smoothed),
-        study.subject, study.signals, data_sheet ? &flight.reconstruction.sigma : nullptr, progress.threads());
+    const auto prepare = [&] {
+      flight.signals = prepare_signals(
+          flight.aligned, flight.reconstruction.smoothed, flow_sensors(options, flight.reconstruction.smoothed),
+          study.subject, study.signals, data_sheet ? &flight.reconstruction.sigma : nullptr, progress.threads());
+    };
+    prepare();
     flight.segments = excited_segments(flight.signals, study.segments);
+    align_by_manoeuvres(flight, study.subject, study.delays, study.known_sensors);
+    prepare();
     leave_out_slow_flight(flight.signals, flight.segments, study.segments.min_airspeed_mps);
     if (study.held_out) flight.segments = all_held_out(std::move(flight.segments));
   } else {
@@ -129,9 +135,12 @@ PreparedFlight prepared(const FlightStudy& study, Progress& progress) {
   }
   progress.stage("checking the recording");
   CheckedFlight checked = recording_evidence(flight.aligned.recording, flight.reconstruction, options, flight.segments,
-                                             flight.delays, progress.threads());
+                                             flight.delays, progress.threads(), study.known_sensors);
   flight.recording_evidence = std::move(checked.rows);
-  flight.doubts = std::move(checked.doubts);
+  if (flight.usable()) {
+    flight.budget.add(checked.errors);
+    flight.signals = without_errors(std::move(flight.signals), flight.budget.errors);
+  }
   return flight;
 }
 

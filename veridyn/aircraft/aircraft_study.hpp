@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "veridyn/aircraft/identification/budget/sensor_priors.hpp"
 #include "veridyn/aircraft/identification/fit/coefficient_uncertainty.hpp"
 #include "veridyn/aircraft/identification/identification.hpp"
 #include "veridyn/aircraft/identification/other_estimators.hpp"
@@ -40,6 +41,7 @@ struct FlightStudy {
   std::optional<Subject> true_subject;
   std::optional<Subject> filter_subject;  ///< whose derivatives the model-based filter takes, where not `subject`
   DelayAlignment delays;
+  KnownSensors known_sensors;  ///< what is known of the real ones
   ReconstructOptions reconstruct;
   SignalOptions signals;
   SegmentOptions segments;

@@ -40,6 +40,13 @@ FlightStudy read_options(const Study& study) {
   static_cast<void>(root.text_or("title", ""));
   result.subject = read_subject(root.table("subject"));
   result.delays = DelayAlignment::keys().read(root.table_or_empty("delays"));
+  result.known_sensors = read_known_sensors(root.table_or_empty("sensors"));
+  // A delay that is known roughly is taken off like one that is given; its standard deviation stays in the budget.
+  for (const SensorError& error : result.known_sensors.errors) {
+    const std::string name(kBudgetSensorNames[error.sensor]);
+    if (error.kind == SensorErrorKind::kDelay && !result.delays.given_for(name))
+      result.delays.given.emplace_back(name, error.mean);
+  }
   result.reconstruct = ReconstructOptions::keys().read(root.table_or_empty("reconstruct"));
   if (const std::filesystem::path& estimate = result.reconstruct.estimate_file; !estimate.empty())
     result.filter_subject = estimated_subject(result.subject, io::read_estimate(estimate), estimate.string());

@@ -157,6 +157,7 @@ DelayEstimate estimate_delay(std::span<const double> reference, std::span<const 
     result.reason = "the signals correlate too little";
   } else if (std::abs(peak) == max_lag) {
     result.reason = "the correlation still rises at the end of the search";
+    result.at_end = true;
   } else if (result.side_peak > options.max_side_peak) {
     result.reason = "another delay fits as well (the signal repeats itself)";
   } else {

@@ -20,6 +20,7 @@ struct DelayEstimate {
   double correlation = 0.0;  ///< normalised cross-correlation c at the peak, signed: -1 when one has the opposite sign
   double at_zero = 0.0;      ///< the same without shifting
   double side_peak = 0.0;    ///< height of the highest other maximum over the peak's
+  bool at_end = false;       ///< the correlation still rises at the end of the search
   bool determined = false;   ///< correlation, side peak and place (not at the end of the search) all allow the answer
   const char* reason = "";   ///< why not, in words
 };

@@ -76,6 +76,7 @@ std::string says_of_finding(const DelayReport& report) {
     case DelayFinding::kNoOptimum:
       return "not determined: no clear optimum";
     case DelayFinding::kNoPeak:
+    case DelayFinding::kAtEnd:
       return fmt::format("not determined: {}", report.why);
     case DelayFinding::kSlow:
       return fmt::format("not determined: fewer than {:g} samples a second", kSlowestDelayed_Hz);
@@ -180,7 +181,7 @@ DelayReport shared_delay(std::string group, std::string reference, const std::ve
   const double least = std::max(options.min_delay_s, estimation::kBeyondChance * sigma);
   // What correlates little has no sign either: of a vane that shows gusts the aircraft's answer is the opposite.
   if (!found.determined) {
-    report.finding = DelayFinding::kNoPeak;
+    report.finding = found.at_end ? DelayFinding::kAtEnd : DelayFinding::kNoPeak;
     report.why = found.reason;
   } else if (found.correlation < 0.0) {
     report.finding = DelayFinding::kOppositeSign;

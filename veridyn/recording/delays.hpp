@@ -53,6 +53,7 @@ enum class DelayFinding {
   kNoneAsGood,       ///< no delay fits as well
   kNoOptimum,        ///< no lag inside the search is best
   kNoPeak,           ///< the cross-correlation has no peak: see `why`
+  kAtEnd,            ///< it still rises at the end of the search
   kSlow,             ///< the group has fewer samples than kSlowestDelayed_Hz
   kInterrupted       ///< the search was
 };

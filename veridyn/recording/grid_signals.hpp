@@ -93,7 +93,8 @@ enum class Holes {
 /// Uses what lies above 0.2 of `rate_Hz`; 0 for fewer than 32 samples in a row.
 [[nodiscard]] double noise_floor(std::span<const double> values, double rate_Hz);
 
-/// The same for a channel, on a grid of its rate; 0 for a channel without a rate.
+/// The same for a channel, of its samples as recorded: interpolated ones have less noise. Where rows are lost all over,
+/// by differences of those that follow each other. 0 for a channel without a rate.
 [[nodiscard]] double noise_floor(const Channel& channel);
 
 /// Standard deviations of white noise per sample that the user gives, by standard channel name. Table

@@ -65,11 +65,7 @@ Identified identified(const FlightStudy& study) {
   }
   for (const estimation::ParameterGroup& group : flight.analysis.groups) {
     if (group.judgement.parameters.grade != Grade::kYes) continue;
-    const auto& all = flight.analysis.coefficients;
-    const auto result = std::ranges::find(all, group.name, &CoefficientResult::name);
-    std::vector<double> doubt;
-    if (result != all.end()) doubt.assign(result->air_data_doubt.begin(), result->air_data_doubt.end());
-    flight.confidence.add(group.parameters, flight.analysis.truth, doubt);
+    flight.confidence.add(group.parameters, flight.analysis.truth);
   }
   return flight;
 }

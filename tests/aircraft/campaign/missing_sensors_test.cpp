@@ -127,15 +127,16 @@ const Tally& of_step(const std::vector<Tally>& sums, const std::string& name) {
   return sums[std::ranges::find(all, name, &Stripped::name) - all.begin()];
 }
 
-// In light turbulence. Motion over ground, heading and attitude cost nothing of what pitot tube and vanes show; without
-// these no parameter that rests on them is said to be a constant of the aircraft.
+// In light turbulence. Motion over ground, heading and attitude cost little of what pitot tube and vanes show: where
+// nothing verifies these the priors are in the intervals, and up to a fifth of them become too wide. Without pitot tube
+// or vanes no parameter that rests on them is said to be a constant of the aircraft.
 TEST(MissingSensorsCampaign, CostWhatDependsOnThem) {
   const std::vector<Tally> sums = tallies(1, 300.0, "low_light");
   const std::size_t all = of_step(sums, "nothing").identified;
   for (const char* name : {"ground velocity", "heading", "ground velocity, heading", "attitude, heading",
                            "ground velocity, attitude, heading", "nothing, no filter"}) {
     const Tally& tally = of_step(sums, name);
-    EXPECT_GE(tally.identified + 3, all) << name;
+    EXPECT_GE(5 * tally.identified, 4 * all) << name;
     EXPECT_GE(tally.coverage(), 0.9) << name;
     EXPECT_LE(tally.wrong, 1U) << name << ": " << tally.which;
   }

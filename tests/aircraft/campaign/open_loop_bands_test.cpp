@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tests/aircraft/campaign/campaign.hpp"
+#include "tests/aircraft/exact_sensors.hpp"
 #include "veridyn/aircraft/identification/validation/open_loop.hpp"
 
 namespace veridyn::aircraft {
@@ -48,7 +49,7 @@ void expect_honest_bands(const std::string& aircraft, const std::string& turbule
   Progress quiet;
   Inside identified, right, wrong;
   for (std::uint64_t seed = 1; seed <= flights; ++seed) {
-    FlightStudy study = testing::campaign_flight(aircraft, seed, 240.0, turbulence);
+    FlightStudy study = testing::with_exact_sensors(testing::campaign_flight(aircraft, seed, 240.0, turbulence));
     OpenLoopOptions& options = study.validate.open_loop;
     options.duration_s = 10.0;
     if (turbulence == "none") options.gusts = false;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "tests/aircraft/campaign/campaign.hpp"
+#include "tests/aircraft/exact_sensors.hpp"
 #include "veridyn/aircraft/model/air_data.hpp"
 #include "veridyn/core/constants.hpp"
 
@@ -68,7 +69,7 @@ std::pair<double, std::string> largest_difference(const Identified& one, const I
 // What rotation adds at the end of a boom is not the aircraft's. Two standard errors: the noise of both flights is the
 // same, but the method that suits a coefficient may be another.
 TEST(VanesOnABoom, AreMovedToTheCentreOfGravity) {
-  const FlightStudy clean = campaign_flight("unatrap", 3, 120.0, "none");
+  const FlightStudy clean = aircraft::testing::with_exact_sensors(campaign_flight("unatrap", 3, 120.0, "none"));
   const Vector boom(2.0, 0.0, 0.0);
   FlightStudy study = with_vanes(clean, [&](const Vector& v, const Vector& rates) -> std::array<double, 2> {
     const AirData<double> there = air_data<double>(Vector(v + rates.cross(boom)));
@@ -89,13 +90,14 @@ TEST(VanesInUpwash, AreDividedByTheScaleThatTheReconstructionFinds) {
     const AirData<double> there = air_data<double>(v);
     return {1.12 * there.alpha, there.beta};
   });
-  const Identified expected = identified(clean);
-  const double lift_slope = value(expected, "CL_alpha");
-  const double uncorrected = value(identified(study), "CL_alpha");
+  const double lift_slope = value(identified(aircraft::testing::with_exact_sensors(clean)), "CL_alpha");
+  // The check of the vane's scale in manoeuvres finds it to 2 %, where the study does not say that the vane is right.
+  EXPECT_NEAR(value(identified(study), "CL_alpha") / lift_slope, 1.0, 0.05);
+  study = aircraft::testing::with_exact_sensors(std::move(study));
+  EXPECT_NEAR(value(identified(study), "CL_alpha") / lift_slope, 1.0 / 1.12, 0.02) << "that the flight can tell";
   study.reconstruct.alpha_scale = true;
   study.reconstruct.filter = FilterKind::kModelBased;  // which sees it in calm air
   EXPECT_NEAR(value(identified(study), "CL_alpha") / lift_slope, 1.0, 0.03);
-  EXPECT_NEAR(uncorrected / lift_slope, 1.0 / 1.12, 0.02) << "that the flight can tell";
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "tests/aircraft/exact_sensors.hpp"
 #include "veridyn/aircraft/aircraft_study.hpp"
 
 namespace veridyn::aircraft {
@@ -27,7 +28,8 @@ turbulence = "none"
 
 FlightAnalysis identify(const std::string& more, FlightStudy* out = nullptr) {
   Progress progress;
-  FlightStudy study = read_study(Study::parse(std::string(kCalmFlight) + more, "calm.toml"), progress);
+  FlightStudy study = aircraft::testing::with_exact_sensors(
+      read_study(Study::parse(std::string(kCalmFlight) + more, "calm.toml"), progress));
   FlightAnalysis analysis = identify(study, progress);
   if (out != nullptr) *out = std::move(study);
   return analysis;

@@ -23,7 +23,7 @@ double velocity(double t) {
 }
 
 /// Level flight that is only accelerated forward; the GPS is late and `stamp_scale` times slower than it should be.
-MappedRecording flight(double stamp_scale = 1.0) {
+MappedRecording flight(double stamp_scale = 1.0, double late_s = kLate_s) {
   std::vector<double> fast, slow;
   for (int k = 0; k < 60 * 50; ++k) fast.push_back(0.02 * k);
   for (int k = 0; k < 60 * 5; ++k) slow.push_back(0.2 * k * stamp_scale);
@@ -40,7 +40,7 @@ MappedRecording flight(double stamp_scale = 1.0) {
   add("accel_x", "m/s^2", imu, acceleration);
   add("accel_y", "m/s^2", imu, zero);
   add("accel_z", "m/s^2", imu, [](double) { return -9.80665; });
-  add("vel_north", "m/s", gps, [&](double t) { return velocity(t / stamp_scale - kLate_s); });
+  add("vel_north", "m/s", gps, [&](double t) { return velocity(t / stamp_scale - late_s); });
   add("vel_east", "m/s", gps, zero);
   return mapped;
 }
@@ -65,6 +65,17 @@ TEST(AlignDelays, TakesTheLatenessOfTheGpsOffItsStamps) {
   EXPECT_TRUE(gps->applied()) << recording::says(*gps);
   EXPECT_NEAR(gps->delay_s, kLate_s, 0.01);
   EXPECT_NEAR(aligned.mapped.recording.at("vel_north").times().front(), -kLate_s, 0.01);
+}
+
+// As of a receiver whose sentences come over a serial line; `max` is 0.3 s.
+TEST(AlignDelays, SearchesFartherForALateGps) {
+  for (const double late_s : {0.42, 0.8}) {
+    const AlignedRecording aligned = align_delays(flight(1.0, late_s), {});
+    const DelayReport* gps = find(aligned.delays, "gps");
+    ASSERT_NE(gps, nullptr);
+    EXPECT_TRUE(gps->applied()) << recording::says(*gps);
+    EXPECT_NEAR(gps->delay_s, late_s, 0.01);
+  }
 }
 
 // A gust moves the vane before the aircraft, and the pilot of this one reacts to it: what does not know that finds
@@ -118,7 +129,8 @@ TEST(AlignDelays, FindsThoseOfVanesAndSurfacesInTurbulence) {
     ASSERT_NE(report, nullptr);
     EXPECT_TRUE(report->applied()) << group << ": " << recording::says(*report);
     EXPECT_NEAR(report->delay_s, late_s, 3.0 * report->sigma_s) << group;
-    EXPECT_LT(report->sigma_s, 0.01) << group;
+    // How gusts turn the air about the aircraft leaves a delay by the side force in doubt.
+    EXPECT_LT(report->sigma_s, report->group == "beta" ? 0.03 : 0.01) << group;
   }
 }
 

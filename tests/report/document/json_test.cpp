@@ -91,6 +91,13 @@ TEST(ToJson, ReplacesBytesThatAreNoText) {
   EXPECT_EQ(parsed({.title = "log\xFF\xC3(name\xE2\x82"})["title"], "log\xEF\xBF\xBD\xEF\xBF\xBD(name\xEF\xBF\xBD");
 }
 
+// Such a p-value ended a run while its report was written.
+TEST(ToJson, WritesNumbersThatAreHardlyMoreThanZero) {
+  const json figure = first_block(TimeSeries{
+      .samples = {0, 1}, .panels = {{.label = "p", .unit = "1", .lines = {{.name = "p", .y = {3e-310, 1.0}}}}}});
+  EXPECT_GT(figure["panels"][0]["lines"][0]["y"][0].get<double>(), 0.0);
+}
+
 TEST(ToJson, WritesWhatIsNoNumberAsNull) {
   const json figure = first_block(
       TimeSeries{.samples = {0, 1, 2},

@@ -7,11 +7,11 @@
 #include <cmath>
 
 #include "veridyn/aircraft/identification/evidence/coefficient_evidence.hpp"
-#include "veridyn/aircraft/identification/evidence/sensor_doubt.hpp"
 #include "veridyn/aircraft/identification/fit/body_error.hpp"
 #include "veridyn/aircraft/identification/fit/coefficient_description.hpp"
 #include "veridyn/aircraft/identification/fit/coefficient_fit.hpp"
 #include "veridyn/aircraft/identification/fit/error_variance.hpp"
+#include "veridyn/aircraft/identification/fit/sensor_width.hpp"
 #include "veridyn/aircraft/identification/output_error/chosen_output_error.hpp"
 #include "veridyn/aircraft/identification/rows/coefficient_rows.hpp"
 #include "veridyn/aircraft/identification/rows/flight_rows.hpp"
@@ -89,30 +89,37 @@ Eigen::MatrixXd sensitivity_to_body(const CoefficientFit& fit, const FlightView&
   });
 }
 
-/// See doubt_sensitivity: of the doubts that are part of the interval, or of those alongside it. What one flight leaves
-/// in doubt is independent of what another does: a column each.
-Eigen::MatrixXd doubts_of_air_data(const CoefficientFit& fit, const FlightView& view, bool in_interval) {
-  Eigen::MatrixXd columns(fit.of_rows.size(), 0);
+/// See sensor_sensitivity: of the errors of each flight. A sensor is the same in all flights, and so is its error: it
+/// does not average out over them, nor show in their scatter.
+Eigen::MatrixXd sensitivity_to_sensors(const CoefficientFit& fit, const FlightView& view) {
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(fit.of_rows.size(), kSensorErrors);
   for (std::size_t i = 0; i < view.flights.size(); ++i) {
     const PreparedFlight& flight = view.flights[i];
     if (fit.rows.rows_of(i) == 0) continue;
-    std::vector<SignalDoubt> doubts = flight.doubts;
-    std::erase_if(doubts, [&](const SignalDoubt& doubt) {
-      return doubt.in_interval != in_interval || !doubt.affects().contains(place_of(fit.model.coefficient));
-    });
-    const auto changed_estimate = [&](const FlightSignals& changed) {
-      RegressionData data =
-          coefficient_rows(fit.model, view.flights, RowUse::kIdentification, view.subject, &flight, &changed).data;
-      const auto n = data.parameters();
-      data.error_covariance(n, n) = equation_error(data).variance;
-      const RegressionEstimate estimate = estimation::estimate(data, fit.chosen->method, view.regression_options());
-      return estimate.usable() ? estimate.theta : Eigen::VectorXd();
-    };
-    const Eigen::MatrixXd more = doubt_sensitivity(flight.signals, doubts, fit.of_rows, changed_estimate);
-    columns.conservativeResize(Eigen::NoChange, columns.cols() + more.cols());
-    columns.rightCols(more.cols()) = more;
+    columns += sensor_sensitivity(
+        flight.signals, flight.budget, fit.model.coefficient, fit.of_rows, [&](const FlightSignals& changed) {
+          RegressionData data = coefficient_rows(fit.model, view.flights, RowUse::kIdentification, view.subject,
+                                                 &flight, &changed, &fit.rows.data.error_covariance)
+                                    .data;
+          const auto n = data.parameters();
+          data.error_covariance(n, n) = equation_error(data).variance;
+          const RegressionEstimate estimate = estimation::estimate(data, fit.chosen->method, view.regression_options());
+          return estimate.usable() ? estimate.theta : Eigen::VectorXd();
+        });
   }
   return columns;
+}
+
+/// Widens the intervals by what is not known of the aircraft and its sensors.
+void widen_by_budget(CoefficientResult& result, CoefficientFit& fit, const FlightView& view) {
+  const auto& parameters = fit.chosen->parameters;
+  Eigen::VectorXd noise(static_cast<Eigen::Index>(parameters.size()));
+  for (Eigen::Index i = 0; i < noise.size(); ++i) noise(i) = parameters[static_cast<std::size_t>(i)].sigma;
+  result.body_sensitivity = sensitivity_to_body(fit, view);
+  result.sensor_sensitivity = sensitivity_to_sensors(fit, view);
+  result.interval_parts = interval_parts(noise, result.sensor_sensitivity, result.body_sensitivity);
+  widen(*fit.chosen, result.body_sensitivity, view.options.significance);
+  widen(*fit.chosen, result.sensor_sensitivity, view.options.significance);
 }
 
 /// A verdict and the sentence that explains it.
@@ -219,6 +226,7 @@ CoefficientResult judged(CoefficientResult result, CoefficientFit fit, const Fli
     const bool scatters = each && each->scatter.found();
     if (!scatters) estimation::widen(*fit.chosen, checks.scatter, options.significance);
     if (fit.by_output_error) result.output_error_widening = internal::widening_of(fit, *flown);
+    widen_by_budget(result, fit, flight);
     result.evidence = coefficient_evidence(result.name, checks, fit.comparison, options);
     if (each) {
       result.evidence.push_back(scatter_row(result.name, each->scatter, *fit.chosen));
@@ -235,23 +243,15 @@ CoefficientResult judged(CoefficientResult result, CoefficientFit fit, const Fli
     result.judgement = estimation::judge(result.evidence);
     const estimation::GroupVerdict reached = estimation::verdict_of(result.judgement);
     if (reached == estimation::GroupVerdict::kIdentified) {
-      result.body_sensitivity = sensitivity_to_body(fit, flight);
-      widen(*fit.chosen, result.body_sensitivity, options.significance);
-      // What each flight leaves in doubt is in their scatter.
-      if (!scatters) widen(*fit.chosen, doubts_of_air_data(fit, flight, true), options.significance);
       verdict = explain(result, *fit.chosen, checks, result.method,
                         dominant_constant(*fit.chosen, result.body_sensitivity, flight.subject));
     } else {
       verdict = {reached, objection(result, checks)};
     }
-    fit.chosen->parameters = weak_by_collinearity(std::move(fit.chosen->parameters), result.evidence);
     fit.chosen->parameters = estimation::marked(
         estimation::marked(std::move(fit.chosen->parameters), plausible, ParameterStatus::kImplausible), reached);
-    if (reached == estimation::GroupVerdict::kIdentified) {
-      result.air_data_doubt = doubts_of_air_data(fit, flight, false).rowwise().norm();
-      fit.chosen->parameters = weak_by_doubt(std::move(fit.chosen->parameters), result.air_data_doubt);
-      result.evidence.push_back(doubt_row(result.name, fit.chosen->parameters, result.air_data_doubt));
-    }
+    if (reached == estimation::GroupVerdict::kIdentified)
+      result.evidence.push_back(sensor_share_row(result.name, fit.chosen->parameters, result.interval_parts));
     result.identification_fit = checks.identification_fit;
     result.holdout_fit = checks.holdout_fit;
     result.flight_fits = checks.flight_fits;

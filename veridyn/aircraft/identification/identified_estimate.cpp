@@ -97,18 +97,26 @@ estimation::Estimate make_estimate(const Subject& subject, std::span<const Coeff
         estimate.parameters.back().status = ParameterStatus::kNotExcited;
     }
     estimate.covariance.block(at, at, chosen.theta.size(), chosen.theta.size()) = chosen.covariance;
-    // Coefficients are estimated separately, but share the errors of mass, geometry and inertia.
+    // Coefficients are estimated separately, but share the errors of mass, geometry, inertia and sensors.
     for (const auto& [other, earlier] : shared) {
-      const Eigen::MatrixXd& G = earlier->body_sensitivity;
       Eigen::MatrixXd cross = shared_run(result, *earlier, runs);
-      if (G.size() > 0 && result.body_sensitivity.size() > 0) cross += result.body_sensitivity * G.transpose();
+      for (const auto errors : {&CoefficientResult::body_sensitivity, &CoefficientResult::sensor_sensitivity}) {
+        const Eigen::MatrixXd &G = result.*errors, &of_earlier = earlier->*errors;
+        if (G.size() > 0 && of_earlier.size() > 0) cross += G * of_earlier.transpose();
+      }
       estimate.covariance.block(at, other, cross.rows(), cross.cols()) = cross;
       estimate.covariance.block(other, at, cross.cols(), cross.rows()) = cross.transpose();
     }
     shared.emplace_back(at, &result);
     at += chosen.theta.size();
-    for (Eigen::Index i = 0; i < result.air_data_doubt.size(); ++i)
-      estimate.fit[chosen.parameters[i].name + ".air_data_doubt"] = result.air_data_doubt(i);
+    const IntervalParts& parts = result.interval_parts;
+    for (Eigen::Index i = 0; i < parts.noise.size(); ++i) {
+      const std::string& parameter = chosen.parameters[i].name;
+      estimate.fit[parameter + ".by_noise"] = parts.noise(i);
+      estimate.fit[parameter + ".by_air_data"] = parts.air_data(i);
+      estimate.fit[parameter + ".by_delays"] = parts.delays(i);
+      estimate.fit[parameter + ".by_body"] = parts.body(i);
+    }
     estimate.fit[name + ".r2"] = result.identification_fit.r2;
     estimate.fit[name + ".residual_sd"] = chosen.residual_sd;
     estimate.fit[name + ".samples"] = static_cast<double>(chosen.rows);

@@ -29,6 +29,9 @@ using Series = BandLimited::Series;
 /// Below this airspeed the flow angles have no rate [m/s].
 constexpr double kSlowest_mps = 3.0;
 
+/// A receiver read by NMEA sentences on a serial line is 0.2 to 0.5 s late: it is searched up to here.
+constexpr double kLatestGps_s = 1.0;
+
 /// In the order in which they are aligned: later ones are compared with earlier ones.
 const std::vector<DelayGroup>& groups() {
   static const std::vector<DelayGroup> all{{"attitude", {"roll", "pitch", "yaw"}},
@@ -159,8 +162,15 @@ class Alignment {
     return Va;
   }
 
-  DelayReport compare(const DelayGroup& group, const char* reference, const std::vector<recording::DelayPair>& pairs) {
+  /// @param farther_s  where the best delay is at the end of the search it goes on up to here; 0: it does not
+  DelayReport compare(const DelayGroup& group, const char* reference, const std::vector<recording::DelayPair>& pairs,
+                      double farther_s = 0.0) {
     DelayReport report = recording::shared_delay(group.name, reference, pairs, band_.rate_Hz(), options_);
+    if (report.finding == recording::DelayFinding::kAtEnd && farther_s > options_.max_delay_s) {
+      recording::DelayOptions farther = options_;
+      farther.max_delay_s = farther_s;
+      report = recording::shared_delay(group.name, reference, pairs, band_.rate_Hz(), farther);
+    }
     if (report.applied()) take_off(group.channels, report.delay_s);
     return report;
   }
@@ -199,7 +209,8 @@ class Alignment {
     const auto [low, slope] = band_.kernels(std::min(options_.band_Hz, 0.2 * fixes));
     return compare(group, reference,
                    {{numerics::filter(north, low), numerics::filter(band_.raw(at("vel_north")), slope)},
-                    {numerics::filter(east, low), numerics::filter(band_.raw(at("vel_east")), slope)}});
+                    {numerics::filter(east, low), numerics::filter(band_.raw(at("vel_east")), slope)}},
+                   kLatestGps_s);
   }
 
   /// Derivative of the airspeed that specific force and attitude imply in still air.
@@ -293,12 +304,17 @@ class Alignment {
       for (const char* surface : {"aileron", "rudder"}) equation.add_position(surface);
     }
     // The vane is late against all of them.
-    return recording::common_effect_delay(group.name, lift ? "lift (accel_z)" : "side force (accel_y)",
-                                          {{.effect = smooth(group.name),
-                                            .causes = {equation.measured(force, 2)},
-                                            .others = {},
-                                            .late_others = equation.others()}},
-                                          band_.step(), options_, progress_, "force");
+    DelayReport report = recording::common_effect_delay(group.name, lift ? "lift (accel_z)" : "side force (accel_y)",
+                                                        {{.effect = smooth(group.name),
+                                                          .causes = {equation.measured(force, 2)},
+                                                          .others = {},
+                                                          .late_others = equation.others()}},
+                                                        band_.step(), options_, progress_, "force");
+    // A gust also turns the air about the aircraft, at a rate that goes with the change of its angle: what that does to
+    // the force seems an earlier angle, by c/(2 V) CL_q/CL_alpha or b/(2 V) CY_r/CY_beta (5 and 50 ms for UnATRaP).
+    constexpr double kTurningLift_s = 0.005, kTurningSideForce_s = 0.025;
+    if (report.determined()) report.sigma_s = std::hypot(report.sigma_s, lift ? kTurningLift_s : kTurningSideForce_s);
+    return report;
   }
 
   /// What a vane shows in still air follows from the motion, whatever the aerodynamics. Gusts are left out: the

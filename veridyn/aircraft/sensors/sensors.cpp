@@ -118,6 +118,7 @@ namespace {
 void read_each_sensor(const StudyTable& table, SensorSet& set) {
   std::vector<std::string> names = {"set"};
   for (const SensorKind& kind : sensor_kinds()) names.emplace_back(kind.name);
+  names.insert(names.end(), kRecordedSensorNames.begin(), kRecordedSensorNames.end());
   for (const std::string& key : table.keys())
     if (std::find(names.begin(), names.end(), key) == names.end())
       table.fail(key, fmt::format("unknown sensor{}", suggestion(key, names)));

@@ -62,6 +62,10 @@ using SensorSet = std::vector<SensorSettings>;
 /// tachometer without error at 100 Hz; the thrust sensor is off.
 [[nodiscard]] SensorSet reference_sensors();
 
+/// Tables of `[sensors]` that say what is known of the sensor of a recorded channel; simulations do not read them.
+inline constexpr std::array<std::string_view, 8> kRecordedSensorNames{
+    "airspeed", "alpha", "beta", "elevator", "aileron", "rudder", "specific_force", "air_density"};
+
 /// Study table `[sensors]`, over the reference set, with a table for each sensor that differs.
 [[nodiscard]] const KeyTable<SensorSet>& sensor_keys();
 /// The reference set with what the table changes. @throws InputError with file, line and key

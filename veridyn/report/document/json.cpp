@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -54,7 +55,8 @@ std::string_view name_of(SceneShape::Kind kind) {
 /// Nine digits are more than any table shows and fewer than a double's noise.
 json number(double value) {
   if (!std::isfinite(value)) return nullptr;
-  return std::stod(fmt::format("{:.9g}", value));
+  // A p-value may be too small for a normal number, which stod refuses.
+  return std::strtod(fmt::format("{:.9g}", value).c_str(), nullptr);
 }
 
 json facts_json(const std::vector<Fact>& facts) {

@@ -8,6 +8,8 @@
 
 #include "tests/aircraft/campaign/campaign.hpp"
 #include "tests/aircraft/circling_flight.hpp"
+#include "tests/aircraft/stripped_recording.hpp"
+#include "veridyn/aircraft/reconstruction/corrected_flow.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/judgement/check.hpp"
 
@@ -19,17 +21,7 @@ using estimation::Check;
 using estimation::Evidence;
 using estimation::Outcome;
 
-TEST(DoubtOf, IsTheMeasurementsWhereThatIsGoodAndThePriorsWhereItIsNot) {
-  EXPECT_NEAR(doubt_of(Determined{1.03, 0.001}, 1.0, 0.1), 0.03, 1e-4);
-  EXPECT_NEAR(doubt_of(Determined{1.0, 0.001}, 1.0, 0.1), 0.001, 1e-6);
-  EXPECT_NEAR(doubt_of(Determined{3.0, 100.0}, 1.0, 0.1), 0.1, 1e-4);
-  EXPECT_EQ(doubt_of(std::nullopt, 1.0, 0.1), 0.1);
-  EXPECT_EQ(doubt_of(Determined{kNaN, kNaN}, 0.0, 0.05), 0.05);
-  // Posterior of a normal prior: mean 0.05, variance 0.005.
-  EXPECT_NEAR(doubt_of(Determined{1.1, 0.1}, 1.0, 0.1), std::sqrt(0.05 * 0.05 + 0.005), 1e-12);
-}
-
-/// The doubts of a flight of 150 s with a channel scaled.
+/// A flight of 150 s with a channel scaled.
 PreparedFlight evidence_with(const char* channel, double factor, const char* turbulence) {
   FlightStudy study = aircraft::testing::campaign_flight("unatrap", 1, 150.0, turbulence);
   Channel changed = study.mapped.recording.at(channel);
@@ -38,19 +30,22 @@ PreparedFlight evidence_with(const char* channel, double factor, const char* tur
   return aircraft::testing::identified(study).analysis.flights.front();
 }
 
-double doubt_about(const std::vector<SignalDoubt>& doubts, FlightSignal signal) {
-  double largest = 0.0;
-  for (const SignalDoubt& doubt : doubts)
-    if (doubt.signal == signal) largest = std::max(largest, doubt.scale);
-  return largest;
+double scale_of(const std::vector<SensorError>& errors, BudgetSensor sensor, double SensorError::*figure) {
+  for (const SensorError& error : errors)
+    if (error.sensor == sensor && error.kind == SensorErrorKind::kScale) return error.*figure;
+  return kNaN;
+}
+
+double doubt_about(const std::vector<SensorError>& errors, BudgetSensor sensor) {
+  return scale_of(errors, sensor, &SensorError::sigma);
 }
 
 TEST(AirDataEvidence, LeavesLittleInDoubtInCalmAirAndMoreInTurbulence) {
-  const std::vector<SignalDoubt> calm = evidence_with("alpha", 1.0, "none").doubts;
-  const std::vector<SignalDoubt> rough = evidence_with("alpha", 1.0, "low_moderate").doubts;
-  for (const FlightSignal signal : {FlightSignal::kAirspeed, FlightSignal::kAlpha, FlightSignal::kBeta}) {
-    EXPECT_LT(doubt_about(calm, signal), 0.05) << kFlightSignalNames[signal];
-    EXPECT_GT(doubt_about(rough, signal), doubt_about(calm, signal));
+  const std::vector<SensorError> calm = evidence_with("alpha", 1.0, "none").budget.errors;
+  const std::vector<SensorError> rough = evidence_with("alpha", 1.0, "low_moderate").budget.errors;
+  for (const BudgetSensor sensor : {BudgetSensor::kAirspeed, BudgetSensor::kAlpha, BudgetSensor::kBeta}) {
+    EXPECT_LT(doubt_about(calm, sensor), 0.05) << kBudgetSensorNames[sensor];
+    EXPECT_GT(doubt_about(rough, sensor), doubt_about(calm, sensor));
   }
 }
 
@@ -62,7 +57,9 @@ TEST(AirDataEvidence, DoubtsAWrongScaleThatItCannotName) {
   ASSERT_NE(row, calm.recording_evidence.end());
   EXPECT_EQ(row->outcome, Outcome::kCare);
   const PreparedFlight rough = evidence_with("dynamic_pressure", 1.2, "low_moderate");
-  EXPECT_GT(doubt_about(rough.doubts, FlightSignal::kAirspeed), 0.02);
+  EXPECT_GT(doubt_about(rough.budget.errors, BudgetSensor::kAirspeed), 0.02);
+  // The mean is taken off: 1.2 of pressure are 1.095 of airspeed.
+  EXPECT_NEAR(scale_of(calm.budget.errors, BudgetSensor::kAirspeed, &SensorError::mean), 0.095, 0.02);
 }
 
 /// The checks of five circles; `taken_off` is what the reconstruction found of an error, with its name.
@@ -76,7 +73,10 @@ CheckedFlight circled(const aircraft::testing::Circles& circles,
   reconstruction.smoothed.add(std::move(error));
   Segments segments;
   segments.airborne = {{0.0, aircraft::testing::kCirclingEnd_s}};
-  return air_data_evidence(recording, reconstruction, true, segments);
+  const FlowSensors vanes = flow_sensors({}, reconstruction.smoothed);
+  return air_data_evidence(
+      with_corrected_flow({.recording = recording}, vanes, reconstruction.smoothed).mapped.recording, reconstruction,
+      true, segments);
 }
 
 Evidence row_in(const CheckedFlight& checked, Check check, std::string_view about) {
@@ -119,7 +119,7 @@ TEST(AirDataEvidence, SaysHowWellGustsLetTheScaleBeVerified) {
   const Evidence row = row_in(gusty, Check::kAirspeedScale, "airspeed");
   EXPECT_EQ(row.outcome, Outcome::kNotVerified) << says(row);
   EXPECT_EQ(row.cause, Cause::kNoise);
-  EXPECT_GT(doubt_about(gusty.doubts, FlightSignal::kAirspeed), 0.01);
+  EXPECT_GT(doubt_about(gusty.errors, BudgetSensor::kAirspeed), 0.01);
 }
 
 TEST(AirDataEvidence, GradesTheZeroOfAVane) {
@@ -135,12 +135,29 @@ TEST(AirDataEvidence, GradesTheZeroOfAVane) {
   EXPECT_FALSE(affects(row(0.0), Coefficient::kCn));
 }
 
+// Without ground velocity there is nothing to compare with, which leaves the priors and not certainty.
+TEST(AirDataEvidence, LeavesThePriorsWhereNothingIsMeasured) {
+  Recording recording = aircraft::testing::circling({});
+  Reconstruction reconstruction;
+  reconstruction.smoothed.add(recording.at("air_density"));
+  recording = aircraft::testing::without(recording, {"vel_north", "vel_east", "vel_down"});
+  const CheckedFlight checked = air_data_evidence(recording, reconstruction, true, {});
+  EXPECT_TRUE(checked.rows.empty());
+  EXPECT_GE(doubt_about(checked.errors, BudgetSensor::kAirspeed), 0.05);
+  EXPECT_EQ(doubt_about(checked.errors, BudgetSensor::kAlpha), 0.1);
+  EXPECT_EQ(doubt_about(checked.errors, BudgetSensor::kAirDensity), 0.01);
+  const KnownSensors known{{{BudgetSensor::kAlpha, SensorErrorKind::kScale, 0.05, 0.01}}};
+  const CheckedFlight calibrated = air_data_evidence(recording, reconstruction, true, {}, known);
+  EXPECT_EQ(doubt_about(calibrated.errors, BudgetSensor::kAlpha), 0.01);
+  EXPECT_EQ(scale_of(calibrated.errors, BudgetSensor::kAlpha, &SensorError::mean), 0.05);
+}
+
 // Without gyro and accelerometer nothing is compared, which is no alarm.
 TEST(AirDataEvidence, SaysThatTheScaleOfAVaneIsNotVerified) {
   const CheckedFlight checked = circled({});
-  for (const auto& [name, signal] : {std::pair{"alpha", FlightSignal::kAlpha}, {"beta", FlightSignal::kBeta}}) {
+  for (const auto& [name, sensor] : {std::pair{"alpha", BudgetSensor::kAlpha}, {"beta", BudgetSensor::kBeta}}) {
     EXPECT_EQ(row_in(checked, Check::kVaneScale, name).outcome, Outcome::kNotVerified);
-    EXPECT_NEAR(doubt_about(checked.doubts, signal), 0.2, 1e-12) << "what is left is the prior";
+    EXPECT_NEAR(doubt_about(checked.errors, sensor), 0.1, 1e-12) << "what is left is the prior";
   }
 }
 

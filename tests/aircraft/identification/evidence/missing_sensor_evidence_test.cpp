@@ -45,9 +45,9 @@ struct UnfeltFlight {
     const std::vector<Evidence> all = rows();
     return *std::ranges::find(all, check, &Evidence::check);
   }
-  [[nodiscard]] SignalDoubt doubt(FlightSignal signal) const {
-    const std::vector<SignalDoubt> all = checked().doubts;
-    return *std::ranges::find(all, signal, &SignalDoubt::signal);
+  [[nodiscard]] double sigma(BudgetSensor sensor, SensorErrorKind kind) const {
+    const std::vector<SensorError> all = checked().errors;
+    return std::ranges::find_if(all, [&](const SensorError& e) { return e.sensor == sensor && e.kind == kind; })->sigma;
   }
 };
 
@@ -55,8 +55,7 @@ TEST(MissingSensorEvidence, SaysByHowMuchTheWindLeavesTheAirspeedInDoubt) {
   const UnfeltFlight sure(0.1, 0.001);
   EXPECT_NEAR(sure.row(Check::kNoAirspeedSensor).value, 0.1 / 20.0, 1e-12);
   EXPECT_EQ(sure.row(Check::kNoAirspeedSensor).outcome, Outcome::kNotVerified);
-  EXPECT_TRUE(sure.doubt(FlightSignal::kAirspeed).in_interval);
-  EXPECT_NEAR(sure.doubt(FlightSignal::kAirspeed).scale, 0.1 / 20.0, 1e-12);
+  EXPECT_NEAR(sure.sigma(BudgetSensor::kAirspeed, SensorErrorKind::kScale), 0.1 / 20.0, 1e-12);
   EXPECT_EQ(UnfeltFlight(0.4, 0.001).row(Check::kNoAirspeedSensor).outcome, Outcome::kCare);
   EXPECT_EQ(UnfeltFlight(1.0, 0.001).row(Check::kNoAirspeedSensor).outcome, Outcome::kFailed);
 }
@@ -66,7 +65,7 @@ TEST(MissingSensorEvidence, ComparesUnfeltGustsWithManoeuvres) {
   const UnfeltFlight calm(0.1, 0.05 * kDegree);
   EXPECT_NEAR(calm.row(Check::kNoVane).value, 0.000625, 3e-6);
   EXPECT_EQ(calm.row(Check::kNoVane).outcome, Outcome::kNotVerified);
-  EXPECT_NEAR(calm.doubt(FlightSignal::kAlpha).zero, 0.1 / 20.0, 1e-12);
+  EXPECT_NEAR(calm.sigma(BudgetSensor::kAlpha, SensorErrorKind::kZero), 0.1 / 20.0, 1e-12);
   EXPECT_EQ(UnfeltFlight(0.1, 0.15 * kDegree).row(Check::kNoVane).outcome, Outcome::kCare);
   const Evidence gusty = UnfeltFlight(0.1, 1.0 * kDegree).row(Check::kNoVane);
   EXPECT_EQ(gusty.outcome, Outcome::kFailed);

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "tests/aircraft/exact_sensors.hpp"
 #include "tests/aircraft/rescaled_subject.hpp"
 #include "veridyn/aircraft/aircraft_study.hpp"
 #include "veridyn/core/error.hpp"
@@ -32,7 +33,7 @@ set = "reference"
 [reconstruct]
 sensors = "reference"
 )toml" + more;
-  return read_study(Study::parse(text, "flight.toml"), progress);
+  return aircraft::testing::with_exact_sensors(read_study(Study::parse(text, "flight.toml"), progress));
 }
 
 /// A flight in calm air by output error, identified once for all tests.

@@ -18,11 +18,10 @@ using estimation::kBeyondChance;
 using estimation::Outcome;
 using estimation::row_of;
 
-/// Standard deviations of air data of which nothing is known but that they were installed with care: position error of
-/// a pitot tube, upwash at a vane ahead of a wing, a vane aligned by eye.
-constexpr double kUnverifiedAirspeed = 0.1;
-constexpr double kUnverifiedVane = 0.2;
-constexpr double kUnverifiedZero = 3.0 * kDegree;
+/// How well attitude and heading of an ordinary autopilot are known in the mean: the zero of a vane is measured against
+/// them.
+constexpr double kAttitudeZero = 0.5 * kDegree;
+constexpr double kHeadingZero = 2.0 * kDegree;
 
 Evidence airspeed_row(const Determined& scale) {
   /// An error of 1 % changes coefficients by 2 %: a scale that is not known to that is not verified.
@@ -86,53 +85,89 @@ Evidence slope_row(const std::optional<VaneSlope>& fit, const std::string& name)
   return std::move(row).with("doubt", doubt).with("control", name == "alpha" ? "elevator" : "rudder");
 }
 
-/// The air data as the reconstruction took them: without the errors that it estimated and took off.
+/// The air data as the reconstruction took them: without the error of the pitot tube that it estimated and took off.
 AirDataConsistency corrected(AirDataConsistency air, const Reconstruction& reconstruction) {
-  const auto taken_off = [&](const char* error) {
-    const Channel* channel = reconstruction.smoothed.find(error);
-    return channel == nullptr || channel->empty() ? 0.0 : channel->value.front();
-  };
-  if (air.airspeed_scale) air.airspeed_scale->value /= std::sqrt(std::max(1.0 + taken_off("pitot_scale"), 0.01));
-  if (air.alpha) air.alpha->bias.value -= taken_off("alpha_bias");
-  if (air.beta) air.beta->bias.value -= taken_off("beta_bias");
+  const Channel* scale = reconstruction.smoothed.find("pitot_scale");
+  if (scale != nullptr && !scale->empty() && air.airspeed_scale)
+    air.airspeed_scale->value /= std::sqrt(std::max(1.0 + scale->value.front(), 0.01));
   return air;
+}
+
+double mean_in(const Channel& channel, std::span<const TimeSpan> spans) {
+  double sum = 0.0, count = 0.0;
+  for (std::size_t k = 0; k < channel.size(); ++k) {
+    const double t = channel.times()[k], v = channel.value[k];
+    if (!std::isfinite(v) || std::ranges::none_of(spans, [&](const TimeSpan& span) { return span.contains(t); }))
+      continue;
+    sum += v;
+    count += 1.0;
+  }
+  return sum / count;
+}
+
+/// Scale of the airspeed and zero of its pressure are one unknown at the airspeed flown: dV/V = dq/(rho V^2).
+SensorError airspeed_prior(const Reconstruction& reconstruction, const Channel& density, const Segments& segments,
+                           const KnownSensors& known) {
+  SensorError prior = prior_of(BudgetSensor::kAirspeed, SensorErrorKind::kScale, known);
+  const SensorError zero = prior_of(BudgetSensor::kAirspeed, SensorErrorKind::kZero, known);
+  const Channel* airspeed = reconstruction.smoothed.find("airspeed");
+  if (airspeed == nullptr) return prior;
+  const double V = mean_in(*airspeed, segments.airborne);
+  const double per_pascal = 1.0 / (density.value.front() * V * V);
+  if (!std::isfinite(per_pascal)) return prior;
+  prior.mean += zero.mean * per_pascal;
+  prior.sigma = std::hypot(prior.sigma, zero.sigma * per_pascal);
+  return prior;
+}
+
+/// A prior of a scale or a zero after what was measured of `nominal` plus the error.
+SensorError measured(const SensorError& prior, const std::optional<Determined>& found, double nominal,
+                     double reference_sigma) {
+  if (!found) return prior;
+  return updated(prior, found->value - nominal, std::hypot(found->sigma, reference_sigma));
+}
+
+/// A vane, its prior and what it is compared with.
+struct CheckedVane {
+  const char* name;
+  BudgetSensor sensor;
+  double reference_zero;
+};
+
+CheckedFlight vane_evidence(const CheckedVane& vane, const std::optional<VaneFit>& fit,
+                            const std::optional<VaneSlope>& slope, const KnownSensors& known) {
+  CheckedFlight found;
+  if (fit) {
+    found.add(vane_row(*fit, vane.name));
+    found.add(slope_row(slope, vane.name));
+  }
+  const auto mean = fit ? std::optional(fit->bias) : std::nullopt;
+  const auto scale = slope ? std::optional(slope->slope) : std::nullopt;
+  found.errors = {measured(prior_of(vane.sensor, SensorErrorKind::kZero, known), mean, 0.0, vane.reference_zero),
+                  measured(prior_of(vane.sensor, SensorErrorKind::kScale, known), scale, 1.0, 0.0)};
+  return found;
 }
 
 }  // namespace
 
-double doubt_of(const std::optional<Determined>& measured, double nominal, double before) {
-  if (!measured || !std::isfinite(measured->value) || !std::isfinite(measured->sigma)) return before;
-  const double variance = measured->sigma * measured->sigma;
-  const double weight = before * before / (before * before + variance);
-  return std::hypot(weight * (measured->value - nominal), std::sqrt(weight * variance));
-}
-
 CheckedFlight air_data_evidence(const Recording& recording, const Reconstruction& reconstruction, bool airspeed_is_true,
-                                const Segments& segments) {
+                                const Segments& segments, const KnownSensors& known) {
   CheckedFlight found;
   const Channel* density = reconstruction.smoothed.find("air_density");
-  if (density == nullptr) return found;
+  if (density == nullptr || density->empty()) return found;
   const AirDataConsistency air =
       corrected(air_data_consistency(recording, *density, airspeed_is_true, segments.airborne), reconstruction);
-  if (air.airspeed_scale) {
-    found.add(airspeed_row(*air.airspeed_scale));
-    found.doubts.push_back(
-        {.signal = FlightSignal::kAirspeed, .scale = doubt_of(air.airspeed_scale, 1.0, kUnverifiedAirspeed)});
-  }
-  const auto vane = [&](const VaneFit& fit, const std::optional<VaneSlope>& slope, const char* name,
-                        FlightSignal signal) {
-    found.add(vane_row(fit, name));
-    found.doubts.push_back({.signal = signal, .zero = doubt_of(fit.bias, 0.0, kUnverifiedZero)});
-    found.add(slope_row(slope, name));
-    const std::optional<Determined> scale = slope ? std::optional(slope->slope) : std::nullopt;
-    found.doubts.push_back({.signal = signal, .scale = doubt_of(scale, 1.0, kUnverifiedVane)});
-  };
-  if (air.alpha)
-    vane(*air.alpha, alpha_slope(recording, *density, airspeed_is_true, segments.longitudinal.excited), "alpha",
-         FlightSignal::kAlpha);
-  if (air.beta)
-    vane(*air.beta, beta_slope(recording, *density, airspeed_is_true, segments.lateral.excited), "beta",
-         FlightSignal::kBeta);
+  if (air.airspeed_scale) found.add(airspeed_row(*air.airspeed_scale));
+  if (recording.has("airspeed") || recording.has("dynamic_pressure"))
+    found.errors.push_back(
+        measured(airspeed_prior(reconstruction, *density, segments, known), air.airspeed_scale, 1.0, 0.0));
+  found.errors.push_back(prior_of(BudgetSensor::kAirDensity, SensorErrorKind::kScale, known));
+  if (recording.has("alpha"))
+    found.add(vane_evidence({"alpha", BudgetSensor::kAlpha, kAttitudeZero}, air.alpha,
+                            alpha_slope(recording, *density, airspeed_is_true, segments.longitudinal.excited), known));
+  if (recording.has("beta"))
+    found.add(vane_evidence({"beta", BudgetSensor::kBeta, kHeadingZero}, air.beta,
+                            beta_slope(recording, *density, airspeed_is_true, segments.lateral.excited), known));
   return found;
 }
 

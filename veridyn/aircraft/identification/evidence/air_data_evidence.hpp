@@ -1,7 +1,6 @@
 #pragma once
 
-#include <optional>
-
+#include "veridyn/aircraft/identification/budget/sensor_priors.hpp"
 #include "veridyn/aircraft/identification/evidence/checked_flight.hpp"
 #include "veridyn/aircraft/identification/signals/segments.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct.hpp"
@@ -10,15 +9,12 @@
 namespace veridyn::aircraft {
 
 /// Does air data agree with ground velocity, attitude, gyro and accelerometer? Rows of the airspeed's scale and of zero
-/// and scale of each vane; each with what it leaves in doubt. Errors that the reconstruction estimated and took off are
-/// taken off here too. No rows without the channels that it takes.
+/// and scale of each vane, where the channels that this takes are there. The errors of airspeed, vanes and air density
+/// are those of the priors after what was measured of them; without a measurement the priors. Errors of the airspeed
+/// that the reconstruction estimated and took off are taken off here too.
+/// @param recording  with the vanes' angles of the centre of gravity (`with_corrected_flow`)
 [[nodiscard]] CheckedFlight air_data_evidence(const Recording& recording, const Reconstruction& reconstruction,
-                                              bool airspeed_is_true, const Segments& segments);
-
-/// How wrong something that is taken to be `nominal` may be (root mean square), after a measurement of it; none where
-/// the recording has no measurement. `before` is the standard deviation without one: of a normal prior about `nominal`,
-/// so that a poor measurement leaves that and a good one its own deviation and error:
-///     w = before^2 / (before^2 + sigma^2),  doubt^2 = (w (value - nominal))^2 + w sigma^2.
-[[nodiscard]] double doubt_of(const std::optional<Determined>& measured, double nominal, double before);
+                                              bool airspeed_is_true, const Segments& segments,
+                                              const KnownSensors& known = {});
 
 }  // namespace veridyn::aircraft

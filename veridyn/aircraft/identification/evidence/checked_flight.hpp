@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "veridyn/aircraft/identification/budget/sensor_error.hpp"
 #include "veridyn/aircraft/identification/signals/measured_coefficients.hpp"
 #include "veridyn/aircraft/model/aero_model.hpp"
 #include "veridyn/estimation/judgement/evidence.hpp"
@@ -26,31 +27,15 @@ inline constexpr estimation::Groups kByNothing = estimation::Groups();
   return row.affects.contains(place_of(c));
 }
 
-/// How wrong a signal may be, the same in all samples, as far as a recording tells: one standard deviation.
-struct SignalDoubt {
-  FlightSignal signal = FlightSignal::kAirspeed;
-  double scale = 0.0;  ///< of reading over truth
-  double zero = 0.0;   ///< in the signal's unit
-  /// Whether it is part of the interval: of what no sensor measures the reconstruction knows how wrong it may be, while
-  /// a sensor is taken as right.
-  bool in_interval = false;
-
-  /// The coefficients that rest on the signal.
-  [[nodiscard]] estimation::Groups affects() const {
-    if (signal == FlightSignal::kAlpha) return kByAlpha;
-    return signal == FlightSignal::kBeta ? kByBeta : estimation::Groups::all();
-  }
-};
-
-/// What the checks of a flight's recording found, and what they leave in doubt where that has a size.
+/// What the checks of a flight's recording found, and what they say of the errors of its sensors.
 struct CheckedFlight {
   std::vector<estimation::Evidence> rows;
-  std::vector<SignalDoubt> doubts;
+  std::vector<SensorError> errors;  ///< independent of each other
 
   void add(estimation::Evidence row) { rows.push_back(std::move(row)); }
   void add(CheckedFlight more) {
     for (estimation::Evidence& row : more.rows) rows.push_back(std::move(row));
-    for (const SignalDoubt& doubt : more.doubts) doubts.push_back(doubt);
+    errors.insert(errors.end(), more.errors.begin(), more.errors.end());
   }
 };
 

@@ -132,16 +132,6 @@ Evidence scatter_row(const std::string& name, const estimation::GroupScatter& sc
   return std::move(row).with("most", std::move(most)).with("share", largest);
 }
 
-std::vector<estimation::Parameter> weak_by_collinearity(std::vector<estimation::Parameter> parameters,
-                                                        std::span<const Evidence> rows) {
-  const auto row = std::ranges::find_if(rows, estimation::is_collinearity);
-  if (row == rows.end() || row->passed()) return parameters;
-  for (estimation::Parameter& p : parameters)
-    if (p.status == estimation::ParameterStatus::kIdentified && p.variance_inflation > estimation::kMostInflation)
-      p.status = estimation::ParameterStatus::kWeak;
-  return parameters;
-}
-
 std::vector<Evidence> plausibility(Coefficient coefficient, std::span<const estimation::Parameter> parameters,
                                    const Subject& subject) {
   /// Sign that every aircraft that flies has, and what a wrong one suggests.

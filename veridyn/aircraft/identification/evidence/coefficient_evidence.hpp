@@ -50,11 +50,6 @@ struct CoefficientChecks {
 [[nodiscard]] estimation::Evidence scatter_row(const std::string& name, const estimation::GroupScatter& scatter,
                                                const estimation::RegressionEstimate& chosen);
 
-/// The parameters with status weak for what is identified but collinear (a variance inflation above 10) where the row
-/// "collinearity" did not pass: what the residual holds beyond noise may be in any of them.
-[[nodiscard]] std::vector<estimation::Parameter> weak_by_collinearity(std::vector<estimation::Parameter> parameters,
-                                                                      std::span<const estimation::Evidence> rows);
-
 /// Are the values those of an aircraft? Lift slope against lifting-line theory of the subject's wing (Helmbold's
 /// formula, within a factor of 2), signs of damping, side force and drag: with care where a value contradicts them by
 /// more than three standard errors, since a wrong sign, unit or scale of a sensor is then more likely than such an

@@ -63,7 +63,7 @@ CheckedFlight airspeed_row(const Reconstruction& reconstruction, const Segments&
   // Gusts with it: in gusts that no sensor feels the slow wind is found worse than the filter says.
   const double along = sigma->rms() / speed->mean();
   return {{unknown_by(Check::kNoAirspeedSensor, "airspeed", along)},
-          {{.signal = FlightSignal::kAirspeed, .scale = along, .in_interval = true}}};
+          {{.sensor = BudgetSensor::kAirspeed, .kind = SensorErrorKind::kScale, .sigma = along}}};
 }
 
 /// A flow angle that no vane measures.
@@ -86,11 +86,10 @@ CheckedFlight vane_row(const Reconstruction& reconstruction, const Segments& seg
   Evidence row = unknown_by(Check::kNoVane, name, ratio);
   row.with("unknown", sigma->rms()).with("moved", angle->sd());
   row.affects = alpha ? kByAlpha : kByBeta;
+  const BudgetSensor sensor = alpha ? BudgetSensor::kAlpha : BudgetSensor::kBeta;
   return {{std::move(row)},
-          {{.signal = alpha ? FlightSignal::kAlpha : FlightSignal::kBeta,
-            .scale = ratio,
-            .zero = across / std::max(1.0, speed->mean()),
-            .in_interval = true}}};
+          {{.sensor = sensor, .kind = SensorErrorKind::kScale, .sigma = ratio},
+           {.sensor = sensor, .kind = SensorErrorKind::kZero, .sigma = across / std::max(1.0, speed->mean())}}};
 }
 
 /// Without a filter the noise of the airspeed is in every sample of a coefficient, twice, and of a computed thrust.

@@ -12,6 +12,7 @@
 #include "veridyn/aircraft/identification/evidence/air_data_evidence.hpp"
 #include "veridyn/aircraft/identification/evidence/contradicted_flight.hpp"
 #include "veridyn/aircraft/identification/evidence/missing_sensor_evidence.hpp"
+#include "veridyn/aircraft/reconstruction/corrected_flow.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/numerics/threads/parallel.hpp"
@@ -270,17 +271,26 @@ Evidence deflection_row(const Recording& recording) {
 
 CheckedFlight recording_evidence(const Recording& recording, const Reconstruction& reconstruction,
                                  const ReconstructOptions& options, const Segments& segments,
-                                 std::span<const DelayReport> delays, int threads) {
+                                 std::span<const DelayReport> delays, int threads, const KnownSensors& known) {
   // What takes time, side by side.
   std::vector<Evidence> samples = sample_rows(recording, segments, threads), inertial;
   CheckedFlight air_data;
   const std::array<std::function<void()>, 2> checks{
       [&] { inertial = recording::inertial_evidence(recording::inertial_consistency(recording, segments.airborne)); },
-      [&] { air_data = air_data_evidence(recording, reconstruction, options.airspeed_is_true, segments); }};
+      [&] {
+        const FlowSensors vanes = flow_sensors(options, reconstruction.smoothed);
+        const auto check = [&](const Recording& of) {
+          return air_data_evidence(of, reconstruction, options.airspeed_is_true, segments, known);
+        };
+        air_data =
+            vanes.exact()
+                ? check(recording)
+                : check(with_corrected_flow({.recording = recording}, vanes, reconstruction.smoothed).mapped.recording);
+      }};
   numerics::parallel_for(checks.size(), threads, [&](std::size_t i) { checks[i](); });
 
   CheckedFlight found;
-  const auto add = [&](std::vector<Evidence> more) { found.add({.rows = std::move(more), .doubts = {}}); };
+  const auto add = [&](std::vector<Evidence> more) { found.add({.rows = std::move(more), .errors = {}}); };
   add(std::move(samples));
   add(std::move(inertial));
   add(delay_rows(delays));

@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "veridyn/aircraft/identification/budget/sensor_priors.hpp"
 #include "veridyn/aircraft/identification/evidence/checked_flight.hpp"
 #include "veridyn/aircraft/identification/signals/segments.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct.hpp"
@@ -13,9 +14,11 @@ namespace veridyn::aircraft {
 /// attitude, clocks, air data against ground velocity and against gyro and accelerometer, ranges of deflections,
 /// sensors against the reconstruction, gusts against their model.
 /// @param delays   what the alignment of the clocks found
+/// @param known    what the study knows of the sensors: the priors of their errors
 /// @param threads  0: as many as the machine has
 [[nodiscard]] CheckedFlight recording_evidence(const Recording& recording, const Reconstruction& reconstruction,
                                                const ReconstructOptions& options, const Segments& segments,
-                                               std::span<const DelayReport> delays = {}, int threads = 0);
+                                               std::span<const DelayReport> delays = {}, int threads = 0,
+                                               const KnownSensors& known = {});
 
 }  // namespace veridyn::aircraft

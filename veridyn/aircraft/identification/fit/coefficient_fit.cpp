@@ -8,6 +8,7 @@
 #include "veridyn/aircraft/identification/fit/coefficient_description.hpp"
 #include "veridyn/aircraft/identification/fit/error_variance.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/judgement/agreement.hpp"
 #include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/estimation/judgement/limits.hpp"
@@ -36,9 +37,21 @@ const RegressionEstimate* choose(const RegressionComparison& comparison, std::op
   return nullptr;
 }
 
-/// Of two independent estimates of the same parameters.
-estimation::Agreement agreement_of(const RegressionEstimate& a, const RegressionEstimate& b) {
-  return estimation::agreement(a.theta - b.theta, a.covariance + b.covariance);
+/// The derivatives of a model. Constants hold the trim and zeros of sensors, which drift: that parts of a flight differ
+/// in them refuses no derivative.
+std::vector<Eigen::Index> derivatives_of(const CoefficientModel& model) {
+  std::vector<Eigen::Index> derivatives;
+  for (std::size_t i = 0; i < model.size(); ++i)
+    if (!model.terms[i].constant() || model.size() == 1) derivatives.push_back(signed_index(i));
+  return derivatives;
+}
+
+/// Of two independent estimates of the same derivatives.
+estimation::Agreement agreement_of(const CoefficientModel& model, const RegressionEstimate& a,
+                                   const RegressionEstimate& b) {
+  const std::vector<Eigen::Index> derivatives = derivatives_of(model);
+  return estimation::agreement((a.theta - b.theta)(derivatives),
+                               (a.covariance + b.covariance)(derivatives, derivatives));
 }
 
 /// What the study gave for the terms of a model, where it gave all of them.
@@ -97,8 +110,9 @@ double agreement_beyond_scatter(const RegressionEstimate& mean, const FlightFits
     if (!again.usable()) continue;
     if (each.fits[i].rows.data.rows() > 0) {
       if (!each.fits[i].chosen) continue;
-      const double dimensions = static_cast<double>(n);
-      chi_square += dimensions * agreement_of(*each.fits[i].chosen, again).ratio;
+      const CoefficientFit& own = each.fits[i];
+      const auto dimensions = static_cast<double>(derivatives_of(own.model).size());
+      chi_square += dimensions * agreement_of(own.model, *own.chosen, again).ratio;
       freedom += dimensions;
       continue;
     }
@@ -200,7 +214,7 @@ CoefficientChecks check_fit(const CoefficientFit& fit, double row_interval_s, co
                                        : estimation::estimate(unseen, chosen.method, view.regression_options());
   checks.contradiction_p = kNaN;
   if (again.usable()) {
-    const estimation::Agreement agreement = agreement_of(chosen, again);
+    const estimation::Agreement agreement = agreement_of(fit.model, chosen, again);
     checks.contradiction_p = agreement.p;
     checks.scatter = agreement.ratio;
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "veridyn/aircraft/identification/evidence/coefficient_evidence.hpp"
+#include "veridyn/aircraft/identification/fit/sensor_width.hpp"
 #include "veridyn/aircraft/identification/signals/segments.hpp"
 #include "veridyn/aircraft/model/aero_model.hpp"
 #include "veridyn/estimation/regression/group_scatter.hpp"
@@ -47,9 +48,9 @@ struct CoefficientResult {
   double unmodelled_share = 0.0;
   /// Change of the parameters per standard deviation of mass, geometry and inertia; see body_sensitivity.
   Eigen::MatrixXd body_sensitivity;
-  /// Standard deviation of each parameter for what the recording leaves in doubt of airspeed and vanes, alongside its
-  /// interval; empty unless identified.
-  Eigen::VectorXd air_data_doubt;
+  /// The same per standard deviation of each sensor's error, in the places of `place_of`; see sensor_sensitivity.
+  Eigen::MatrixXd sensor_sensitivity;
+  IntervalParts interval_parts;  ///< what the intervals of `chosen` consist of
   numerics::FitMeasures identification_fit;
   numerics::FitMeasures holdout_fit;
   std::vector<FlightFit> flight_fits;  ///< the same flight by flight, where there are several

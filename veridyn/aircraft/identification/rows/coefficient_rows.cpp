@@ -128,7 +128,8 @@ std::vector<Term> default_candidates(const CoefficientModel& model) {
 }
 
 RegressionData coefficient_data(const CoefficientModel& model, const FlightSignals& signals,
-                                std::span<const TimeSpan> spans, const Subject& subject) {
+                                std::span<const TimeSpan> spans, const Subject& subject,
+                                const Eigen::MatrixXd* errors) {
   const std::vector<FlightSignal> needed = needed_signals(model);
   const auto n = signed_index(model.size());
   std::vector<std::size_t> rows;
@@ -165,6 +166,10 @@ RegressionData coefficient_data(const CoefficientModel& model, const FlightSigna
   }
   if (count == 0) return data;
   internal::take_out_jumps(model, signals, rows, data);
+  if (errors != nullptr) {
+    data.error_covariance = *errors;
+    return data;
+  }
 
   // The Jacobian varies slowly: a mean over some of the rows.
   Eigen::MatrixXd W = Eigen::MatrixXd::Zero(n + 1, n + 1);

@@ -32,8 +32,10 @@ namespace veridyn::aircraft {
 
 /// Regression rows of a coefficient in the given spans: stride-thinned, rows that miss a signal left out, one segment
 /// id a gapless stretch of a span, W from the signals' noise.
+/// @param errors  W where it is known, as of signals that hardly differ: it takes most of the time
 [[nodiscard]] estimation::RegressionData coefficient_data(const CoefficientModel& model, const FlightSignals& signals,
-                                                          std::span<const TimeSpan> spans, const Subject& subject);
+                                                          std::span<const TimeSpan> spans, const Subject& subject,
+                                                          const Eigen::MatrixXd* errors = nullptr);
 
 /// Inside of identification: which samples are rows of a coefficient's regression.
 namespace internal {

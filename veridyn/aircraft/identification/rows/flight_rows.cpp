@@ -52,7 +52,8 @@ RegressionData FlightRows::of(std::size_t flight) const {
 }
 
 FlightRows coefficient_rows(const CoefficientModel& model, std::span<const PreparedFlight> flights, RowUse use,
-                            const Subject& subject, const PreparedFlight* replaced, const FlightSignals* by) {
+                            const Subject& subject, const PreparedFlight* replaced, const FlightSignals* by,
+                            const Eigen::MatrixXd* errors) {
   const Axis axis = axis_of(model.coefficient);
   FlightRows rows;
   rows.first.push_back(0);
@@ -61,7 +62,7 @@ FlightRows coefficient_rows(const CoefficientModel& model, std::span<const Prepa
     const FlightSignals& signals = replaced == &flight ? *by : flight.signals;
     const bool has = flight.usable() && identification_obstacle(model, signals, subject).empty();
     const std::span<const TimeSpan> spans = has ? spans_of(flight.segments.of(axis), use) : std::span<const TimeSpan>();
-    RegressionData part = coefficient_data(model, signals, spans, subject);
+    RegressionData part = coefficient_data(model, signals, spans, subject, errors);
     covariances.push_back(part.error_covariance);
     if (rows.first.size() == 1)
       rows.data = std::move(part);

@@ -32,9 +32,10 @@ struct FlightRows {
 /// The rows of a coefficient's model, those of every flight as `coefficient_data` makes them. Flights that lack a
 /// signal that the model needs have none. The error covariance is the mean over all rows.
 /// @param replaced  signals of one flight in place of its own; null: none are
+/// @param errors    the error covariance where it is known; null: it is computed
 [[nodiscard]] FlightRows coefficient_rows(const CoefficientModel& model, std::span<const PreparedFlight> flights,
                                           RowUse use, const Subject& subject, const PreparedFlight* replaced = nullptr,
-                                          const FlightSignals* by = nullptr);
+                                          const FlightSignals* by = nullptr, const Eigen::MatrixXd* errors = nullptr);
 
 /// Why the coefficient can be computed from the signals of no flight, as of the first usable one; or empty.
 [[nodiscard]] std::string identification_obstacle(const CoefficientModel& model,

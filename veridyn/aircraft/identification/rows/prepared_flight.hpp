@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "veridyn/aircraft/identification/budget/sensor_error.hpp"
 #include "veridyn/aircraft/identification/evidence/checked_flight.hpp"
 #include "veridyn/aircraft/identification/signals/flight_signals.hpp"
 #include "veridyn/aircraft/identification/signals/segments.hpp"
@@ -23,8 +24,8 @@ struct PreparedFlight {
   FlightSignals signals = {};
   Segments segments = {};
   std::vector<estimation::Evidence> recording_evidence =
-      {};                                ///< does the recording agree with itself and with physics?
-  std::vector<SignalDoubt> doubts = {};  ///< what these checks leave in doubt
+      {};                    ///< does the recording agree with itself and with physics?
+  SensorBudget budget = {};  ///< errors of its sensors; the signals are without their means
 
   /// Whether its motion is known: of a contradicted flight there are neither signals nor excited segments.
   [[nodiscard]] bool usable() const { return !reconstruction.contradiction; }

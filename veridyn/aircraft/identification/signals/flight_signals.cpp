@@ -73,7 +73,7 @@ class GriddedChannels {
   }
 
   /// Standard deviation of the white noise of a channel, as the user says or as its content above the pass band shows.
-  [[nodiscard]] double noise_of(const std::string& name, const std::vector<double>& raw) const {
+  [[nodiscard]] double noise_of(const std::string& name) const {
     if (const std::optional<double> given = recording::given_noise(options_.noise, name)) return *given;
     if (known_ != nullptr) {
       if (name.starts_with("gyro")) return known_->gyro;
@@ -81,11 +81,7 @@ class GriddedChannels {
       if (name == "alpha") return known_->alpha;
       if (name == "beta") return known_->beta;
     }
-    const double rate = common_.filter.rate_Hz;
-    // A channel that is slower than the grid was interpolated: its noise is not white there and is measured as
-    // recorded.
-    const Channel& channel = mapped_.recording.at(name);
-    return channel.rate_Hz() < 0.8 * rate ? recording::noise_floor(channel) : recording::noise_floor(raw, rate);
+    return recording::noise_floor(mapped_.recording.at(name));
   }
 
   /// A measured channel of white noise `sd` through a filter.
@@ -99,9 +95,13 @@ class GriddedChannels {
 
  private:
   /// Noise that is left when white noise sampled at the channel's rate has passed the filter. A channel slower than
-  /// the grid was interpolated, so that more of its noise lies in the pass band.
+  /// the grid was interpolated, so that more of its noise lies in the pass band; likewise where rows are lost.
   [[nodiscard]] double left_by(const FirKernel& kernel, const std::string& name, double sd) const {
-    const double recorded = mapped_.recording.at(name).rate_Hz();
+    const Channel& channel = mapped_.recording.at(name);
+    double holes = 0.0;
+    for (const TimeSpan& hole : channel.gaps(0.5)) holes += hole.duration();
+    const double recorded = std::min(
+        channel.rate_Hz(), static_cast<double>(channel.size()) / std::max(channel.span().duration() - holes, 1e-3));
     const double per_grid_sample = std::max(1.0, common_.filter.rate_Hz / recorded);
     return sd * std::sqrt(kernel.noise_gain() * per_grid_sample);
   }
@@ -133,13 +133,13 @@ void find_inertial(const GriddedChannels& channels, const CommonGrid& common, st
   static constexpr std::array<const char*, 3> kAccelerometers{"accel_x", "accel_y", "accel_z"};
   const char* const gyro = kGyros[axis];
   const std::vector<double> rate = channels.raw(gyro);
-  const double gyro_sd = channels.noise_of(gyro, rate);
+  const double gyro_sd = channels.noise_of(gyro);
   signals.rate[axis] = channels.filtered(common.smooth, gyro, rate, gyro_sd, "filtered gyro");
   signals.rate_derivative[axis] = channels.filtered(common.differentiate, gyro, rate, gyro_sd, "differentiated gyro");
   const char* const accelerometer = kAccelerometers[axis];
   if (channels.find(accelerometer) == nullptr) return;
   const std::vector<double> force = channels.raw(accelerometer);
-  signals.force[axis] = channels.filtered(common.smooth, accelerometer, force, channels.noise_of(accelerometer, force),
+  signals.force[axis] = channels.filtered(common.smooth, accelerometer, force, channels.noise_of(accelerometer),
                                           "filtered accelerometer");
 }
 
@@ -182,7 +182,7 @@ GridSignal flow_angle(const GriddedChannels& channels, const CommonGrid& common,
             .origin = "smoother"};
   }
   const std::vector<double> raw = channels.raw(name);
-  return channels.filtered(common.smooth, name, raw, channels.noise_of(name, raw), "filtered vane");
+  return channels.filtered(common.smooth, name, raw, channels.noise_of(name), "filtered vane");
 }
 
 /// Air density on the grid [kg/m^3]; where it is missing the last known one.

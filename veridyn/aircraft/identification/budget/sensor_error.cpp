@@ -1,0 +1,128 @@
+#include "veridyn/aircraft/identification/budget/sensor_error.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "veridyn/numerics/linear_algebra/products.hpp"
+#include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
+
+namespace veridyn::aircraft {
+namespace {
+
+using F = FlightSignal;
+
+std::span<const F> signals_of(BudgetSensor sensor) {
+  static constexpr std::array<F, 8> kAll{F::kAirspeed, F::kAlpha,  F::kBeta, F::kElevator,
+                                         F::kAileron,  F::kRudder, F::kAx,   F::kAy};
+  static constexpr std::array<F, 3> kForce{F::kAx, F::kAy, F::kAz};
+  switch (sensor) {
+    case BudgetSensor::kAccelerometer:
+      return kForce;
+    case BudgetSensor::kAirDensity:
+      return {};
+    default:
+      return std::span(kAll).subspan(static_cast<std::size_t>(sensor), 1);
+  }
+}
+
+/// Of values on a grid `steps` later: by the cubic through the four nearest, the first and last value held beyond the
+/// ends. The signals hold little above half of the grid's Nyquist frequency.
+std::vector<double> later(const std::vector<double>& x, double steps) {
+  const auto n = static_cast<std::ptrdiff_t>(x.size());
+  std::vector<double> moved(x.size());
+  const auto whole = static_cast<std::ptrdiff_t>(std::floor(-steps));
+  const double u = -steps - static_cast<double>(whole);
+  const std::array<double, 4> weight{-u * (u - 1.0) * (u - 2.0) / 6.0, (u + 1.0) * (u - 1.0) * (u - 2.0) / 2.0,
+                                     -(u + 1.0) * u * (u - 2.0) / 2.0, (u + 1.0) * u * (u - 1.0) / 6.0};
+  for (std::ptrdiff_t k = 0; k < n; ++k) {
+    double sum = 0.0;
+    for (std::ptrdiff_t i = 0; i < 4; ++i) {
+      const std::ptrdiff_t at = std::clamp<std::ptrdiff_t>(k + whole + i - 1, 0, n - 1);
+      sum += weight[static_cast<std::size_t>(i)] * x[static_cast<std::size_t>(at)];
+    }
+    moved[static_cast<std::size_t>(k)] = sum;
+  }
+  return moved;
+}
+
+}  // namespace
+
+void SensorBudget::add(const std::vector<SensorError>& independent) {
+  Eigen::VectorXd variance(static_cast<Eigen::Index>(independent.size()));
+  for (std::size_t i = 0; i < independent.size(); ++i)
+    variance(static_cast<Eigen::Index>(i)) = independent[i].sigma * independent[i].sigma;
+  add(independent, variance.asDiagonal());
+}
+
+void SensorBudget::add(const std::vector<SensorError>& more, const Eigen::MatrixXd& covariance_of_more) {
+  errors.insert(errors.end(), more.begin(), more.end());
+  const Eigen::Index before = covariance.rows(), count = covariance_of_more.rows();
+  Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(before + count, before + count);
+  whole.topLeftCorner(before, before) = covariance;
+  whole.bottomRightCorner(count, count) = covariance_of_more;
+  covariance = std::move(whole);
+}
+
+Eigen::MatrixXd root_of_correlation(const SensorBudget& budget) {
+  const Eigen::VectorXd inverse =
+      budget.covariance.diagonal().unaryExpr([](double v) { return v > 0.0 ? 1.0 / std::sqrt(v) : 0.0; });
+  const numerics::SymmetricEigen axes =
+      numerics::symmetric_eigen(numerics::scaled(inverse, budget.covariance, inverse));
+  return numerics::from_eigen(axes.vectors, axes.values.cwiseMax(0.0).cwiseSqrt());
+}
+
+bool rests_on(Coefficient coefficient, BudgetSensor sensor) {
+  const bool longitudinal =
+      coefficient == Coefficient::kCL || coefficient == Coefficient::kCD || coefficient == Coefficient::kCm;
+  const bool force =
+      coefficient == Coefficient::kCL || coefficient == Coefficient::kCD || coefficient == Coefficient::kCY;
+  switch (sensor) {
+    case BudgetSensor::kAlpha:
+    case BudgetSensor::kElevator:
+      return longitudinal;
+    case BudgetSensor::kBeta:
+    case BudgetSensor::kAileron:
+    case BudgetSensor::kRudder:
+      return !longitudinal;
+    case BudgetSensor::kAccelerometer:
+      return force;
+    default:
+      return true;
+  }
+}
+
+FlightSignals with_error(FlightSignals signals, BudgetSensor sensor, SensorErrorKind kind, double size) {
+  if (sensor == BudgetSensor::kAirDensity) {
+    for (double& rho : signals.air_density) rho *= 1.0 + size;
+    return signals;
+  }
+  for (const F which : signals_of(sensor)) {
+    std::vector<double>& value = signals[which].value;
+    if (value.empty()) continue;
+    const std::vector<double> before = value;
+    if (kind == SensorErrorKind::kDelay) {
+      value = later(before, size / signals.grid.step);
+    } else {
+      for (double& v : value) v = kind == SensorErrorKind::kScale ? v * (1.0 + size) : v + size;
+    }
+    std::vector<double>& thrust = signals[F::kThrust].value;
+    if (which != F::kAirspeed || signals.thrust_per_airspeed.empty()) continue;
+    for (std::size_t k = 0; k < thrust.size(); ++k)
+      thrust[k] += signals.thrust_per_airspeed[k] * (value[k] - before[k]);
+  }
+  return signals;
+}
+
+FlightSignals without_errors(FlightSignals signals, const std::vector<SensorError>& errors) {
+  for (const SensorError& error : errors) {
+    if (error.mean == 0.0) continue;
+    const double size =
+        error.kind == SensorErrorKind::kScale ? 1.0 / std::max(1.0 + error.mean, 0.1) - 1.0 : -error.mean;
+    signals = with_error(std::move(signals), error.sensor, error.kind, size);
+  }
+  return signals;
+}
+
+}  // namespace veridyn::aircraft

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+#include "veridyn/aircraft/identification/signals/flight_signals.hpp"
+#include "veridyn/aircraft/sensors/sensors.hpp"
+#include "veridyn/core/enum_array.hpp"
+
+/// Errors of sensors that are the same in all samples of a flight: they do not average out and show in no residual.
+/// Each is an unknown with a prior (`sensor_priors.hpp`), which the checks of the recording update; its mean is taken
+/// off the signals before the regression, and its covariance widens the intervals of the parameters.
+namespace veridyn::aircraft {
+
+/// Whose error it is.
+enum class BudgetSensor { kAirspeed, kAlpha, kBeta, kElevator, kAileron, kRudder, kAccelerometer, kAirDensity };
+inline constexpr std::size_t kBudgetSensors = 8;  ///< values of BudgetSensor
+/// As in studies, `[sensors.alpha]`.
+inline constexpr EnumArray<BudgetSensor, std::string_view, kBudgetSensors> kBudgetSensorNames{kRecordedSensorNames};
+
+enum class SensorErrorKind {
+  kScale,  ///< of reading over truth, less 1
+  kZero,   ///< of the reading, in the signal's unit
+  kDelay   ///< from event to stamp, against the gyro [s]
+};
+
+/// One unknown: what it is thought to be, with one standard deviation.
+struct SensorError {
+  BudgetSensor sensor = BudgetSensor::kAirspeed;
+  SensorErrorKind kind = SensorErrorKind::kScale;
+  double mean = 0.0;
+  double sigma = 0.0;
+};
+
+/// The errors of a flight's sensors after everything that its recording says of them.
+struct SensorBudget {
+  std::vector<SensorError> errors;  ///< their means have been taken off the signals
+  Eigen::MatrixXd covariance;       ///< of the errors, in their order
+
+  /// Adds errors that are independent of those before and of each other.
+  void add(const std::vector<SensorError>& independent);
+  /// Adds errors with a covariance of their own.
+  void add(const std::vector<SensorError>& more, const Eigen::MatrixXd& covariance_of_more);
+};
+
+/// Each kind of error of each sensor has a place among all: columns of sensitivities.
+inline constexpr std::size_t kSensorErrors = 3 * kBudgetSensors;
+[[nodiscard]] constexpr std::size_t place_of(const SensorError& error) {
+  return 3 * static_cast<std::size_t>(error.sensor) + static_cast<std::size_t>(error.kind);
+}
+
+/// The symmetric root of the correlation of the errors, 0 for those that are known exactly: sensitivities per standard
+/// deviation times it are those of independent unknowns.
+[[nodiscard]] Eigen::MatrixXd root_of_correlation(const SensorBudget& budget);
+
+/// Whether a coefficient's rows hold a sensor. Delays of the accelerometer are against the gyro: moments have none.
+[[nodiscard]] bool rests_on(Coefficient coefficient, BudgetSensor sensor);
+
+/// The signals with one more error of the size given, in the unit of its kind. A thrust that was computed from the
+/// airspeed follows it. Of a sensor that the flight does not have nothing changes.
+[[nodiscard]] FlightSignals with_error(FlightSignals signals, BudgetSensor sensor, SensorErrorKind kind, double size);
+
+/// The signals without the means of the errors.
+[[nodiscard]] FlightSignals without_errors(FlightSignals signals, const std::vector<SensorError>& errors);
+
+}  // namespace veridyn::aircraft

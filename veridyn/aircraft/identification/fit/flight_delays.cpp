@@ -1,0 +1,106 @@
+#include "veridyn/aircraft/identification/fit/flight_delays.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "veridyn/aircraft/identification/fit/manoeuvre_delays.hpp"
+#include "veridyn/core/index.hpp"
+
+namespace veridyn::aircraft {
+namespace {
+
+constexpr SensorErrorKind kDelay = SensorErrorKind::kDelay;
+
+bool is_surface(BudgetSensor sensor) {
+  return sensor == BudgetSensor::kElevator || sensor == BudgetSensor::kAileron || sensor == BudgetSensor::kRudder;
+}
+
+DelayReport* report_of(std::vector<DelayReport>& reports, BudgetSensor sensor) {
+  const auto found = std::ranges::find(reports, kBudgetSensorNames[sensor], &DelayReport::group);
+  return found == reports.end() ? nullptr : &*found;
+}
+
+/// About the stamps as they are: what was given or aligned is off them.
+SensorError prior_about_stamps(BudgetSensor sensor, const DelayAlignment& options, const KnownSensors& known) {
+  SensorError prior = prior_of(sensor, kDelay, known);
+  const bool given = options.given_for(kBudgetSensorNames[sensor]).has_value();
+  if (!options.automatic || (given && known.find(sensor, kDelay) == nullptr)) prior.sigma = 0.0;
+  if (given) prior.mean = 0.0;
+  return prior;
+}
+
+/// The prior after what the alignment says of the sensor itself, not by way of others. A deflection that is aligned
+/// while a vane is not may be far off.
+SensorError after_alignment(SensorError prior, const DelayReport* report) {
+  /// Between samples, and by what moves with it.
+  constexpr double kAlignedTo_s = 0.005;
+  if (report == nullptr || !report->determined() || is_surface(prior.sensor)) return prior;
+  // Of the prior about zero, seen from the stamps, off which what was applied is.
+  const double applied = report->applied() ? report->delay_s : 0.0;
+  prior.mean -= applied;
+  return updated(prior, report->delay_s - applied, std::hypot(report->sigma_s, kAlignedTo_s));
+}
+
+/// A servo without lag jumps between two samples. When is not known, and the regression takes the effect of each jump
+/// out (`take_out_jumps`): neither do its rows show a delay, nor does one matter to them.
+bool jumps(const FlightSignals& signals, BudgetSensor sensor) {
+  using F = FlightSignal;
+  return std::ranges::any_of(signals.jumps, [&](const DeflectionJump& jump) {
+    return (sensor == BudgetSensor::kElevator && jump.control == F::kElevator) ||
+           (sensor == BudgetSensor::kAileron && jump.control == F::kAileron) ||
+           (sensor == BudgetSensor::kRudder && jump.control == F::kRudder);
+  });
+}
+
+void take_off(PreparedFlight& flight, const SensorError& error) {
+  const std::string name(kBudgetSensorNames[error.sensor]);
+  recording::take_off_delay(flight.aligned.recording, {name}, error.mean);
+  DelayReport* report = report_of(flight.delays, error.sensor);
+  if (report == nullptr) return;
+  const double aligned = report->applied() ? report->delay_s : 0.0;
+  // Of a surface the report says how much later its effect is.
+  report->delay_s = aligned + (is_surface(error.sensor) ? -error.mean : error.mean);
+  report->sigma_s = error.sigma;
+  if (report->finding != recording::DelayFinding::kGiven) report->finding = recording::DelayFinding::kApplied;
+}
+
+}  // namespace
+
+void align_by_manoeuvres(PreparedFlight& flight, const Subject& subject, const DelayAlignment& options,
+                         const KnownSensors& known) {
+  using enum BudgetSensor;
+  const Recording& recording = flight.aligned.recording;
+  for (const Axis axis : {Axis::kLongitudinal, Axis::kLateral}) {
+    std::vector<SensorError> priors, not_aligned;
+    for (const BudgetSensor sensor : axis == Axis::kLongitudinal
+                                         ? std::vector{kAlpha, kElevator, kAccelerometer}
+                                         : std::vector{kBeta, kAileron, kRudder, kAccelerometer})
+      if (sensor == kAccelerometer || (recording.has(kBudgetSensorNames[sensor]) && !jumps(flight.signals, sensor))) {
+        const DelayReport* report = report_of(flight.delays, sensor);
+        priors.push_back(after_alignment(prior_about_stamps(sensor, options, known), report));
+        not_aligned.push_back(priors.back());
+        if (report != nullptr && report->finding == recording::DelayFinding::kApplied)
+          not_aligned.back().mean = is_surface(sensor) ? report->delay_s : -report->delay_s;
+      }
+    ManoeuvreDelays found =
+        delays_by_manoeuvres(flight.signals, flight.segments.of(axis), subject, priors, not_aligned);
+    // The accelerometer's is a nuisance here: it is one for both axes.
+    const auto last = std::ranges::find(found.errors, kAccelerometer, &SensorError::sensor);
+    const Eigen::Index count = last - found.errors.begin();
+    found.errors.resize(at(count));
+    for (SensorError& error : found.errors) {
+      take_off(flight, error);
+      error.mean = 0.0;
+    }
+    flight.budget.add(found.errors, found.covariance.topLeftCorner(count, count));
+  }
+  std::vector<SensorError> others{prior_about_stamps(kAccelerometer, options, known)};
+  if (recording.has("airspeed") || recording.has("dynamic_pressure"))
+    others.push_back(
+        after_alignment(prior_about_stamps(kAirspeed, options, known), report_of(flight.delays, kAirspeed)));
+  flight.budget.add(others);
+}
+
+}  // namespace veridyn::aircraft
