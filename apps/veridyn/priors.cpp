@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "apps/veridyn/run/console.hpp"
+#include "veridyn/aircraft/identification/budget/sensor_priors.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/vehicle/identification/options/drive_budget.hpp"
@@ -28,9 +29,22 @@ std::vector<Prior> of_vehicle() {
   return priors;
 }
 
+std::vector<Prior> of_aircraft() {
+  static constexpr EnumArray<aircraft::SensorErrorKind, std::string_view, 3> kMeanings{
+      {"reading over truth, less 1", "reading less truth; of the airspeed in its pressure",
+       "from event to time stamp"}};
+  std::vector<Prior> priors;
+  for (const aircraft::SensorPrior& p : aircraft::sensor_priors())
+    priors.push_back(
+        {fmt::format("sensors.{}.{}", aircraft::kBudgetSensorNames[p.sensor], aircraft::kSensorErrorKindNames[p.kind]),
+         p.sigma, std::string(p.unit), std::string(kMeanings[p.kind]), std::string(p.source)});
+  return priors;
+}
+
 std::vector<Prior> priors_of(const std::string& kind) {
   if (kind == "vehicle") return of_vehicle();
-  const std::vector<std::string> names{"vehicle"};
+  if (kind == "aircraft") return of_aircraft();
+  const std::vector<std::string> names{"aircraft", "vehicle"};
   throw InputError("priors", fmt::format("there are none of '{}'{}", kind, suggestion(kind, names)));
 }
 
@@ -58,7 +72,10 @@ int priors(const Arguments& arguments) {
 Command priors_command() {
   return {.name = "priors",
           .summary = "what is taken of errors of sensors and models before a recording says anything of them",
-          .arguments = {{.name = "KIND", .help = "what the study is about: vehicle", .type = "TEXT", .required = true}},
+          .arguments = {{.name = "KIND",
+                         .help = "what the study is about: aircraft, vehicle",
+                         .type = "TEXT",
+                         .required = true}},
           .example = "veridyn priors vehicle",
           .run = priors};
 }

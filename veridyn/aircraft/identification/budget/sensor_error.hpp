@@ -25,6 +25,8 @@ enum class SensorErrorKind {
   kZero,   ///< of the reading, in the signal's unit
   kDelay   ///< from event to stamp, against the gyro [s]
 };
+/// As in studies.
+inline constexpr EnumArray<SensorErrorKind, std::string_view, 3> kSensorErrorKindNames{{"scale", "zero", "delay"}};
 
 /// One unknown: what it is thought to be, with one standard deviation.
 struct SensorError {

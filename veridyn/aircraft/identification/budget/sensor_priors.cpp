@@ -11,8 +11,6 @@
 namespace veridyn::aircraft {
 namespace {
 
-constexpr EnumArray<SensorErrorKind, std::string_view, 3> kKindNames{{"scale", "zero", "delay"}};
-
 std::string unit_of(BudgetSensor sensor, SensorErrorKind kind) {
   for (const SensorPrior& prior : sensor_priors())
     if (prior.sensor == sensor && prior.kind == kind) return std::string(prior.unit);
@@ -20,7 +18,7 @@ std::string unit_of(BudgetSensor sensor, SensorErrorKind kind) {
 }
 
 void read_error(const StudyTable& table, BudgetSensor sensor, SensorErrorKind kind, KnownSensors& known) {
-  const std::string key(kKindNames[kind]);
+  const std::string key(kSensorErrorKindNames[kind]);
   if (!table.has(key)) return;
   if (!table.is_table(key))
     table.fail(key,
@@ -52,8 +50,8 @@ KeyTable<KnownSensors> keys_of(BudgetSensor sensor) {
     const std::string_view range = kind == SensorErrorKind::kScale  ? "`{ value = 1.0, sigma = 0.02 }`"
                                    : kind == SensorErrorKind::kZero ? "`{ value = \"0 deg\", sigma = \"0.2 deg\" }`"
                                                                     : "`{ value = \"30 ms\", sigma = \"3 ms\" }`";
-    table.other({std::string(kKindNames[kind]), unit_of(sensor, kind), std::string(range), "see docs/aircraft.md",
-                 std::string(kSays[kind]), true},
+    table.other({std::string(kSensorErrorKindNames[kind]), unit_of(sensor, kind), std::string(range),
+                 "as `veridyn priors aircraft` prints", std::string(kSays[kind]), true},
                 [sensor, kind](const StudyTable& t, const std::string&, KnownSensors& known) {
                   read_error(t, sensor, kind, known);
                 });
