@@ -160,8 +160,8 @@ struct OutputErrorEstimate {
 /// with the part that the segment's own unknowns explain taken out.
 ///
 /// With `model_error` the likelihood is taken to the power 1/D against priors that count in full, and (D - 1) P S'R^-1S
-/// P is added to the covariance: D = 1 + E/p with E the coloured power of the whitened residual (its autocovariance over
-/// the next five samples, what exceeds two standard errors of white noise) and p the number of shared unknowns. A
+/// P is added to the covariance: D = 1 + E/p with E the coloured power of the whitened residual (its autocovariance
+/// over the next five samples, what exceeds two standard errors of white noise) and p the number of shared unknowns. A
 /// coarsened posterior (Miller & Dunson 2019, J. American Statistical Association 114) whose power is that of what the
 /// model misses: the samples are as wrong along the p parameters as they show to be beside.
 /// @throws InputError when sizes do not fit or an option is wrong.
