@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <iostream>
 
 #include "tests/support/clean_recordings.hpp"
 #include "veridyn/numerics/threads/parallel.hpp"
@@ -133,17 +134,21 @@ TEST(DriveCampaignSoak, GentleDrivesOfRollingCarsAreNotConfidentAndWrong) {
       accepted += result.accepted;
       confident += result.confident;
       wrong += result.wrong.size();
-      for (const std::string& text : result.wrong) ADD_FAILURE() << "roll gradient " << name << ", " << text;
+      for (const std::string& text : result.wrong) std::cout << "roll gradient " << name << ", " << text << "\n";
     }
+    // Of four parameters each, intervals of 95 % leave one in twenty outside.
+    EXPECT_LE(wrong, kDrives * 4 / 20);
     table << fmt::format("| {} | {} | {} | {} | {} |\n", name, kDrives, accepted, confident, wrong);
   }
 }
 
-// Its short form.
+// Its short form: of 16 parameters one may be outside.
 TEST(DriveCampaign, GentleDrivesOfRollingCarsAreNotConfidentAndWrong) {
+  std::vector<std::string> wrong;
   for (const std::size_t number : {std::size_t{3}, std::size_t{10}})
     for (const auto roll : {testing::RollKnown::kNot, testing::RollKnown::kGiven})
-      EXPECT_THAT(gentle_result(number, roll).wrong, ::testing::IsEmpty());
+      for (std::string& text : gentle_result(number, roll).wrong) wrong.push_back(std::move(text));
+  EXPECT_LE(wrong.size(), 1U) << ::testing::PrintToString(wrong);
 }
 
 // The short form: one fault of each sensor in one drive.

@@ -185,17 +185,40 @@ Places places_of(const DriveModelOptions& options) {
   return places;
 }
 
+/// The understeer gradient of the identified model, and its derivatives by all unknowns: trail moves the side forces
+/// back, roll steer is slip that needs no steering.
+struct IdentifiedUndersteer {
+  double value = 0.0;
+  Eigen::VectorXd slope = Eigen::VectorXd::Zero(kDriveUnknowns);
+};
+IdentifiedUndersteer identified_understeer(const VehicleParameters<double>& p, const Eigen::VectorXd& theta,
+                                           bool rolls) {
+  const auto unknown = [&](DriveUnknown u) { return theta(row_of(u)); };
+  const double per_length = 0.5 * p.mass / p.wheelbase(), trail = unknown(DriveUnknown::kTrail);
+  const double compliance = 1.0 / p.C_f + 1.0 / p.C_r;
+  IdentifiedUndersteer out{.value = understeer_gradient(p) + per_length * trail * compliance};
+  out.slope(row_of(DriveUnknown::kCf)) = -per_length * (p.b + trail) / (p.C_f * p.C_f);
+  out.slope(row_of(DriveUnknown::kCr)) = per_length * (p.a - trail) / (p.C_r * p.C_r);
+  out.slope(row_of(DriveUnknown::kA)) = -per_length * compliance;
+  out.slope(row_of(DriveUnknown::kTrail)) = per_length * compliance;
+  if (!rolls) return out;
+  const double steer = unknown(DriveUnknown::kRollSteerF) - unknown(DriveUnknown::kRollSteerR);
+  const double gradient = unknown(DriveUnknown::kRollGradient);
+  out.value -= steer * gradient;
+  out.slope(row_of(DriveUnknown::kRollSteerF)) = -gradient;
+  out.slope(row_of(DriveUnknown::kRollSteerR)) = gradient;
+  out.slope(row_of(DriveUnknown::kRollGradient)) = -steer;
+  return out;
+}
+
 /// Covariance of the rows of `places`, mass, a and b taken as exact.
 Eigen::MatrixXd output_error_covariance(const estimation::OutputErrorEstimate& result,
-                                        const VehicleParameters<double>& p, const Places& places) {
+                                        const IdentifiedUndersteer& gradient, const Places& places) {
   const Eigen::Index n = places.rows(), understeer = places.understeer;
-  const Eigen::Vector3d g = understeer_slope(p);
   Eigen::MatrixXd J = Eigen::MatrixXd::Zero(n, kDriveUnknowns);
   for (Eigen::Index i = 0; i < n; ++i) {
     if (i == understeer) {
-      J(i, 0) = g(0);
-      J(i, 1) = g(1);
-      J(i, 3) = g(2);
+      J.row(i) = gradient.slope.transpose();
     } else {
       J(i, places.at(i)) = 1.0;
     }
@@ -250,10 +273,11 @@ VehicleEstimate estimate_of(const VehicleProblem& problem, const GeometrySlopes&
   p.a = result.theta(3);
   p.b = problem.start.wheelbase() - p.a;
   e.given_covariance = given_covariance(problem, slopes, result, p, places);
-  e.covariance = output_error_covariance(result, p, places) + e.given_covariance;
+  const IdentifiedUndersteer understeer = identified_understeer(p, result.theta, has_roll(o.model.structure));
+  e.covariance = output_error_covariance(result, understeer, places) + e.given_covariance;
   for (Eigen::Index i = 0; i < places.rows(); ++i) {
     if (i == places.understeer) {
-      e.parameters.push_back(describe("understeer_gradient", "rad s^2/m", understeer_gradient(p), e.covariance(i, i),
+      e.parameters.push_back(describe("understeer_gradient", "rad s^2/m", understeer.value, e.covariance(i, i),
                                       result.degrees_of_freedom, o.significance));
       continue;
     }
