@@ -56,8 +56,8 @@ Result result_of(std::size_t car, CarTyre tyre, std::size_t drive, std::uint64_t
   return result;
 }
 
-// A car that leans, livelier than gentle: roll is taken. A shortfall: with roll steer open one of the three is 35 % off,
-// where all were within 3 % while the model had none.
+// A car that leans, livelier than gentle: roll is taken. A shortfall: with roll steer open one of the three is 35 %
+// off, where all were within 3 % while the model had none.
 TEST(RollingCars, ADriveGivesTheStiffnessesOfACarThatLeans) {
   const Result result = result_of(0, CarTyre::kLinear, 3, 1);
   EXPECT_TRUE(has_roll(result.structure));
