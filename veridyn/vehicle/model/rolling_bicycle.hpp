@@ -85,8 +85,8 @@ struct RollingBicycleRates {
 ///   without mass of their own, as in the lateral motion of `FourWheelModel`);
 /// - 6: and the slip angles of front and rear tyres, which follow after `relaxation_length` of travel.
 ///
-/// Roll steer adds e phi to the slip angles of an axle (camber thrust as a share of the stiffness is the same); a trail t
-/// of the tyres adds - t m a_y to the yaw moment, which is the aligning moment of all wheels.
+/// Roll steer adds e phi to the slip angles of an axle (camber thrust as a share of the stiffness is the same); a trail
+/// t of the tyres adds - t m a_y to the yaw moment, which is the aligning moment of all wheels.
 ///
 /// On a banked road gravity pulls by g sin(bank) to its lower side; the body rolls against the road by the tyres'
 /// forces alone.
