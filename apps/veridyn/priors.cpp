@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/veridyn/run/console.hpp"
@@ -41,10 +42,15 @@ std::vector<Prior> of_aircraft() {
   return priors;
 }
 
+const std::pair<std::string, std::vector<Prior> (*)()> kPriorsOf[] = {{"aircraft", of_aircraft},
+                                                                      {"vehicle", of_vehicle}};
+
 std::vector<Prior> priors_of(const std::string& kind) {
-  if (kind == "vehicle") return of_vehicle();
-  if (kind == "aircraft") return of_aircraft();
-  const std::vector<std::string> names{"aircraft", "vehicle"};
+  std::vector<std::string> names;
+  for (const auto& [name, priors] : kPriorsOf) {
+    if (name == kind) return priors();
+    names.push_back(name);
+  }
   throw InputError("priors", fmt::format("there are none of '{}'{}", kind, suggestion(kind, names)));
 }
 
@@ -70,14 +76,14 @@ int priors(const Arguments& arguments) {
 }  // namespace
 
 Command priors_command() {
-  return {.name = "priors",
-          .summary = "what is taken of errors of sensors and models before a recording says anything of them",
-          .arguments = {{.name = "KIND",
-                         .help = "what the study is about: aircraft, vehicle",
-                         .type = "TEXT",
-                         .required = true}},
-          .example = "veridyn priors vehicle",
-          .run = priors};
+  std::string kinds;
+  for (const auto& [name, priors] : kPriorsOf) kinds += (kinds.empty() ? "" : ", ") + name;
+  return {
+      .name = "priors",
+      .summary = "what is taken of errors of sensors and models before a recording says anything of them",
+      .arguments = {{.name = "KIND", .help = "what the study is about: " + kinds, .type = "TEXT", .required = true}},
+      .example = "veridyn priors vehicle",
+      .run = priors};
 }
 
 }  // namespace veridyn::app

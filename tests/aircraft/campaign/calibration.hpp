@@ -12,7 +12,7 @@
 
 /// Simulation-based calibration (Talts et al. 2018): aircraft, air, manoeuvres and errors of sensors are drawn from
 /// stated priors, flown and identified with default options; intervals of 95 % hold the truth in 95 of 100, and its
-/// ranks in the distributions that the intervals stand for are uniform, if intervals mean what they say.
+/// ranks in the distributions that calibrated intervals stand for are uniform.
 namespace veridyn::aircraft::testing {
 
 /// What an aircraft or its log has beyond the model that is identified. The study is told of none of it.

@@ -17,7 +17,7 @@
 #include "veridyn/numerics/threads/parallel.hpp"
 
 /// Simulation-based calibration (Talts et al. 2018) of drives: cars and errors of their sensors are drawn, the drives
-/// identified with default options; intervals of 95 % hold the truth in 95 of 100 if they mean what they say.
+/// identified with default options; calibrated intervals of 95 % hold the truth in 95 of 100.
 namespace veridyn::vehicle {
 namespace {
 

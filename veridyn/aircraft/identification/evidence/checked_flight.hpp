@@ -27,7 +27,7 @@ inline constexpr estimation::Groups kByNothing = estimation::Groups();
   return row.affects.contains(place_of(c));
 }
 
-/// What the checks of a flight's recording found, and what they say of the errors of its sensors.
+/// What the checks of a flight's recording found, and what they measured of the errors of its sensors.
 struct CheckedFlight {
   std::vector<estimation::Evidence> rows;
   std::vector<SensorError> errors;  ///< independent of each other

@@ -16,7 +16,7 @@ struct PartsAgreement {
 };
 
 /// Estimates the vehicle's parameters from the hold-out alone, by the method that was chosen, and compares. Nothing
-/// where there is no hold-out or it gives no estimate. `equation_error` and `output_error` may be null;
+/// where there is no hold-out or it gives no estimate. `equation_error` and `output_error` may be null.
 [[nodiscard]] std::optional<PartsAgreement> compare_parts(const VehicleProblem& problem, VehicleMethod chosen,
                                                           const EquationErrorEstimates* equation_error,
                                                           const OutputErrorResult* output_error, Progress& progress);

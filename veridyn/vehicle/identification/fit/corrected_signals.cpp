@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "veridyn/vehicle/identification/fit/sampled_input.hpp"
-#include "veridyn/vehicle/identification/options/drive_model_options.hpp"
+#include "veridyn/vehicle/identification/options/drive_unknown.hpp"
 
 namespace veridyn::vehicle {
 namespace {

@@ -38,10 +38,10 @@ Parameter describe(std::string name, std::string unit, double value, double vari
   return p;
 }
 
-/// Derivatives of the understeer gradient with respect to C_f, C_r and a (at a given wheelbase).
-Eigen::Vector3d understeer_slope(const VehicleParameters<double>& p) {
+/// Derivatives of the understeer gradient with respect to C_f, C_r and a (at a given wheelbase); of tyres with a trail.
+Eigen::Vector3d understeer_slope(const VehicleParameters<double>& p, double trail = 0.0) {
   const double L = p.wheelbase(), m = p.mass;
-  return {-0.5 * m * p.b / (L * p.C_f * p.C_f), 0.5 * m * p.a / (L * p.C_r * p.C_r),
+  return {-0.5 * m * (p.b + trail) / (L * p.C_f * p.C_f), 0.5 * m * (p.a - trail) / (L * p.C_r * p.C_r),
           -0.5 * m / L * (1.0 / p.C_f + 1.0 / p.C_r)};
 }
 
@@ -194,13 +194,14 @@ struct IdentifiedUndersteer {
 IdentifiedUndersteer identified_understeer(const VehicleParameters<double>& p, const Eigen::VectorXd& theta,
                                            bool rolls) {
   const auto unknown = [&](DriveUnknown u) { return theta(row_of(u)); };
-  const double per_length = 0.5 * p.mass / p.wheelbase(), trail = unknown(DriveUnknown::kTrail);
-  const double compliance = 1.0 / p.C_f + 1.0 / p.C_r;
-  IdentifiedUndersteer out{.value = understeer_gradient(p) + per_length * trail * compliance};
-  out.slope(row_of(DriveUnknown::kCf)) = -per_length * (p.b + trail) / (p.C_f * p.C_f);
-  out.slope(row_of(DriveUnknown::kCr)) = per_length * (p.a - trail) / (p.C_r * p.C_r);
-  out.slope(row_of(DriveUnknown::kA)) = -per_length * compliance;
-  out.slope(row_of(DriveUnknown::kTrail)) = per_length * compliance;
+  const double trail = unknown(DriveUnknown::kTrail);
+  const Eigen::Vector3d slope = understeer_slope(p, trail);
+  // A trail is a centre of gravity as much further back.
+  IdentifiedUndersteer out{.value = understeer_gradient(p) - slope(2) * trail};
+  out.slope(row_of(DriveUnknown::kCf)) = slope(0);
+  out.slope(row_of(DriveUnknown::kCr)) = slope(1);
+  out.slope(row_of(DriveUnknown::kA)) = slope(2);
+  out.slope(row_of(DriveUnknown::kTrail)) = -slope(2);
   if (!rolls) return out;
   const double steer = unknown(DriveUnknown::kRollSteerF) - unknown(DriveUnknown::kRollSteerR);
   const double gradient = unknown(DriveUnknown::kRollGradient);

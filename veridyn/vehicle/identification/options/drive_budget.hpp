@@ -16,7 +16,7 @@ struct DrivePrior {
   std::string_view source;
 };
 
-/// What can be wrong in the same way in all samples of a drive, so that no number of them averages it out: each is an
+/// What can be wrong in the same way in all samples of a drive, which more of them do not make smaller: each is an
 /// unknown of every output error beside the vehicle's, with such a prior. What the drive says of it corrects the
 /// vehicle's parameters, what it leaves open is in their intervals. Those of roll count where the body rolls.
 inline constexpr std::array kDriveBudget{
