@@ -14,7 +14,7 @@
 namespace veridyn::app {
 namespace {
 
-/// One unknown, with a mean of 0.
+/// One unknown; its mean is that of no error.
 struct Prior {
   std::string key;  ///< of a study
   double sigma = 0.0;
@@ -31,14 +31,11 @@ std::vector<Prior> of_vehicle() {
 }
 
 std::vector<Prior> of_aircraft() {
-  static constexpr EnumArray<aircraft::SensorErrorKind, std::string_view, 3> kMeanings{
-      {"reading over truth, less 1", "reading less truth; of the airspeed in its pressure",
-       "from event to time stamp"}};
   std::vector<Prior> priors;
   for (const aircraft::SensorPrior& p : aircraft::sensor_priors())
     priors.push_back(
         {fmt::format("sensors.{}.{}", aircraft::kBudgetSensorNames[p.sensor], aircraft::kSensorErrorKindNames[p.kind]),
-         p.sigma, std::string(p.unit), std::string(kMeanings[p.kind]), std::string(p.source)});
+         p.sigma, std::string(p.unit), std::string(aircraft::kSensorErrorKindMeanings[p.kind]), std::string(p.source)});
   return priors;
 }
 

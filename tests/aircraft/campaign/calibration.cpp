@@ -10,7 +10,6 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/random.hpp"
-#include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::aircraft::testing {
 namespace {
@@ -107,13 +106,6 @@ std::string class_of(const std::string& parameter) {
 }
 constexpr std::array kClasses{"constants", "alpha, beta", "p, q, r", "controls", "others"};
 
-double median(std::vector<double> x) {
-  if (x.empty()) return kNaN;
-  const auto middle = x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2);
-  std::ranges::nth_element(x, middle);
-  return *middle;
-}
-
 std::string percent(std::size_t some, std::size_t all) {
   return all == 0 ? "-" : fmt::format("{:.0f} %", 100.0 * static_cast<double>(some) / static_cast<double>(all));
 }
@@ -163,50 +155,31 @@ void Calibration::add(const Identified& flight) {
   of_flights_.emplace_back();
   for (const estimation::ParameterGroup& group : flight.analysis.groups) {
     for (const Parameter& p : group.parameters) {
-      const bool identified = p.status == ParameterStatus::kIdentified;
-      if (!identified && p.status != ParameterStatus::kInsignificant && p.status != ParameterStatus::kWeak) continue;
+      if (p.status != ParameterStatus::kIdentified && p.status != ParameterStatus::kInsignificant &&
+          p.status != ParameterStatus::kWeak)
+        continue;
       const auto truth = flight.analysis.truth.find(p.name);
       if (truth == flight.analysis.truth.end()) continue;
-      const double error = p.value - truth->second, half = 0.5 * (p.high95 - p.low95);
-      const bool held = truth->second >= p.low95 && truth->second <= p.high95;
+      const bool held = all_.add(p, truth->second);
       classes_[class_of(p.name)].add(held);
       of_flights_.back().add(held);
       if (data_yes && group.judgement.parameters.grade == estimation::Grade::kYes) graded_yes_.add(held);
-      identified_ += identified ? 1 : 0;
-      wrong_ += identified && !held && std::abs(error) > 0.1 * std::abs(truth->second) ? 1 : 0;
-      ranks_.push_back(0.5 * std::erfc(numerics::kNormal95 * error / half / std::sqrt(2.0)));
-      if (truth->second == 0.0) continue;
-      widths_.push_back(half / std::abs(truth->second));
-      errors_.push_back(std::abs(error / truth->second));
     }
   }
-}
-
-double Calibration::coverage() const {
-  std::size_t held = 0;
-  for (const auto& [name, count] : classes_) held += count.held;
-  return static_cast<double>(held) / static_cast<double>(ranks_.size());
 }
 
 double Calibration::coverage_sigma() const {
   double sum = 0.0;
   for (const Count& flight : of_flights_)
     sum += std::pow(static_cast<double>(flight.held) - coverage() * static_cast<double>(flight.intervals), 2.0);
-  return std::sqrt(sum) / static_cast<double>(ranks_.size());
+  return std::sqrt(sum) / static_cast<double>(intervals());
 }
 
-double Calibration::confidently_wrong() const { return static_cast<double>(wrong_) / static_cast<double>(identified_); }
-
-double Calibration::width_over_error() const { return median(widths_) / median(errors_); }
-
-double Calibration::rank_chi_square() const {
-  std::array<double, 10> bins{};
-  for (const double rank : ranks_) bins[std::min<std::size_t>(9, static_cast<std::size_t>(10.0 * rank))] += 1.0;
-  const double expected = 0.1 * static_cast<double>(ranks_.size());
-  double sum = 0.0;
-  for (const double n : bins) sum += (n - expected) * (n - expected) / expected;
-  return sum;
+double Calibration::confidently_wrong() const {
+  return static_cast<double>(all_.wrong()) / static_cast<double>(all_.identified());
 }
+
+double Calibration::width_over_error() const { return all_.median_half_width() / all_.median_error(); }
 
 std::string Calibration::heading() {
   std::string text =
@@ -220,14 +193,14 @@ std::string Calibration::heading() {
 std::string Calibration::row(std::string_view name) const {
   std::string text =
       fmt::format("| {} | {} ({}, {}) | {} | {} | {:.0f} +- {:.0f} % | {} of {} |", name, flights_, lost_,
-                  refusals_.size(), percent(data_yes_, flights_), ranks_.size(), 100.0 * coverage(),
+                  refusals_.size(), percent(data_yes_, flights_), intervals(), 100.0 * coverage(),
                   100.0 * coverage_sigma(), percent(graded_yes_.held, graded_yes_.intervals), graded_yes_.intervals);
   for (const char* one : kClasses) {
     const auto found = classes_.find(one);
     text += fmt::format(" {} |", found == classes_.end() ? "-" : percent(found->second.held, found->second.intervals));
   }
-  return text +
-         fmt::format(" {} of {} | {:.0f} | {:.2f} |\n", wrong_, identified_, rank_chi_square(), width_over_error());
+  return text + fmt::format(" {} of {} | {:.0f} | {:.2f} |\n", all_.wrong(), all_.identified(), all_.rank_chi_square(),
+                            width_over_error());
 }
 
 }  // namespace veridyn::aircraft::testing

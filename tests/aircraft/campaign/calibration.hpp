@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/aircraft/campaign/campaign.hpp"
+#include "tests/support/interval_count.hpp"
 #include "veridyn/core/enum_array.hpp"
 
 /// Simulation-based calibration (Talts et al. 2018): aircraft, air, manoeuvres and errors of sensors are drawn from
@@ -54,18 +55,15 @@ class Calibration {
 
   [[nodiscard]] std::size_t flights() const { return flights_; }
   [[nodiscard]] const std::vector<std::string>& refusals() const { return refusals_; }
-  [[nodiscard]] std::size_t intervals() const { return ranks_.size(); }
+  [[nodiscard]] std::size_t intervals() const { return all_.intervals(); }
   /// Share of intervals that hold the truth.
-  [[nodiscard]] double coverage() const;
+  [[nodiscard]] double coverage() const { return all_.coverage(); }
   /// Its standard error: flights are independent, the parameters of one are not.
   [[nodiscard]] double coverage_sigma() const;
   /// Share of identified parameters that are more than 10 % off and outside of their interval.
   [[nodiscard]] double confidently_wrong() const;
   /// Median of half widths over median of errors, both as shares of the truth: 2.9 for normal errors.
   [[nodiscard]] double width_over_error() const;
-  /// Chi-square of the ranks in ten equal bins, nine degrees of freedom if parameters were independent. Ranks are those
-  /// of the normal distribution that the interval of 95 % belongs to.
-  [[nodiscard]] double rank_chi_square() const;
   /// "| name | flights | ... |", with the heading that belongs to it.
   [[nodiscard]] std::string row(std::string_view name) const;
   [[nodiscard]] static std::string heading();
@@ -78,12 +76,12 @@ class Calibration {
       held += holds ? 1 : 0;
     }
   };
-  std::size_t flights_ = 0, lost_ = 0, data_yes_ = 0, identified_ = 0, wrong_ = 0;
+  std::size_t flights_ = 0, lost_ = 0, data_yes_ = 0;
   std::vector<std::string> refusals_;
   std::map<std::string, Count> classes_;
   Count graded_yes_;  ///< data and the group's parameters
   std::vector<Count> of_flights_;
-  std::vector<double> ranks_, widths_, errors_;
+  test::IntervalCount all_;
 };
 
 }  // namespace veridyn::aircraft::testing

@@ -13,20 +13,6 @@ namespace {
 
 using F = FlightSignal;
 
-std::span<const F> signals_of(BudgetSensor sensor) {
-  static constexpr std::array<F, 8> kAll{F::kAirspeed, F::kAlpha,  F::kBeta, F::kElevator,
-                                         F::kAileron,  F::kRudder, F::kAx,   F::kAy};
-  static constexpr std::array<F, 3> kForce{F::kAx, F::kAy, F::kAz};
-  switch (sensor) {
-    case BudgetSensor::kAccelerometer:
-      return kForce;
-    case BudgetSensor::kAirDensity:
-      return {};
-    default:
-      return std::span(kAll).subspan(static_cast<std::size_t>(sensor), 1);
-  }
-}
-
 /// Of values on a grid `steps` later: by the cubic through the four nearest, the first and last value held beyond the
 /// ends. The signals hold little above half of the grid's Nyquist frequency.
 std::vector<double> later(const std::vector<double>& x, double steps) {
@@ -48,6 +34,19 @@ std::vector<double> later(const std::vector<double>& x, double steps) {
 }
 
 }  // namespace
+
+std::span<const F> signals_of(BudgetSensor sensor) {
+  static constexpr std::array<F, 6> kOne{F::kAirspeed, F::kAlpha, F::kBeta, F::kElevator, F::kAileron, F::kRudder};
+  static constexpr std::array<F, 3> kForce{F::kAx, F::kAy, F::kAz};
+  switch (sensor) {
+    case BudgetSensor::kAccelerometer:
+      return kForce;
+    case BudgetSensor::kAirDensity:
+      return {};
+    default:
+      return std::span(kOne).subspan(static_cast<std::size_t>(sensor), 1);
+  }
+}
 
 void SensorBudget::add(const std::vector<SensorError>& independent) {
   Eigen::VectorXd variance(static_cast<Eigen::Index>(independent.size()));

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -27,6 +28,12 @@ enum class SensorErrorKind {
 };
 /// As in studies.
 inline constexpr EnumArray<SensorErrorKind, std::string_view, 3> kSensorErrorKindNames{{"scale", "zero", "delay"}};
+/// What it is, in words.
+inline constexpr EnumArray<SensorErrorKind, std::string_view, 3> kSensorErrorKindMeanings{
+    {"reading over truth", "reading less truth; of the airspeed in its pressure", "from event to time stamp"}};
+
+/// The signals that a sensor measures; none of the air density, which is no `FlightSignal`.
+[[nodiscard]] std::span<const FlightSignal> signals_of(BudgetSensor sensor);
 
 /// One unknown: what it is thought to be, with one standard deviation.
 struct SensorError {

@@ -45,13 +45,11 @@ KeyTable<KnownSensors> keys_of(BudgetSensor sensor) {
                   "what is taken of ordinary ones. Likewise {}.",
                   fmt::join(others, ", ")));
   for (const SensorErrorKind kind : enumerators<SensorErrorKind, 3>()) {
-    static constexpr EnumArray<SensorErrorKind, std::string_view, 3> kSays{
-        {"reading over truth", "reading less truth; of the airspeed in its pressure", "from event to time stamp"}};
     const std::string_view range = kind == SensorErrorKind::kScale  ? "`{ value = 1.0, sigma = 0.02 }`"
                                    : kind == SensorErrorKind::kZero ? "`{ value = \"0 deg\", sigma = \"0.2 deg\" }`"
                                                                     : "`{ value = \"30 ms\", sigma = \"3 ms\" }`";
     table.other({std::string(kSensorErrorKindNames[kind]), unit_of(sensor, kind), std::string(range),
-                 "as `veridyn priors aircraft` prints", std::string(kSays[kind]), true},
+                 "as `veridyn priors aircraft` prints", std::string(kSensorErrorKindMeanings[kind]), true},
                 [sensor, kind](const StudyTable& t, const std::string&, KnownSensors& known) {
                   read_error(t, sensor, kind, known);
                 });

@@ -129,7 +129,6 @@ SensorError measured(const SensorError& prior, const std::optional<Determined>& 
 
 /// A vane, its prior and what it is compared with.
 struct CheckedVane {
-  const char* name;
   BudgetSensor sensor;
   double reference_zero;
 };
@@ -138,8 +137,9 @@ CheckedFlight vane_evidence(const CheckedVane& vane, const std::optional<VaneFit
                             const std::optional<VaneSlope>& slope, const KnownSensors& known) {
   CheckedFlight found;
   if (fit) {
-    found.add(vane_row(*fit, vane.name));
-    found.add(slope_row(slope, vane.name));
+    const std::string name(kBudgetSensorNames[vane.sensor]);
+    found.add(vane_row(*fit, name));
+    found.add(slope_row(slope, name));
   }
   const auto mean = fit ? std::optional(fit->bias) : std::nullopt;
   const auto scale = slope ? std::optional(slope->slope) : std::nullopt;
@@ -163,10 +163,10 @@ CheckedFlight air_data_evidence(const Recording& recording, const Reconstruction
         measured(airspeed_prior(reconstruction, *density, segments, known), air.airspeed_scale, 1.0, 0.0));
   found.errors.push_back(prior_of(BudgetSensor::kAirDensity, SensorErrorKind::kScale, known));
   if (recording.has("alpha"))
-    found.add(vane_evidence({"alpha", BudgetSensor::kAlpha, kAttitudeZero}, air.alpha,
+    found.add(vane_evidence({BudgetSensor::kAlpha, kAttitudeZero}, air.alpha,
                             alpha_slope(recording, *density, airspeed_is_true, segments.longitudinal.excited), known));
   if (recording.has("beta"))
-    found.add(vane_evidence({"beta", BudgetSensor::kBeta, kHeadingZero}, air.beta,
+    found.add(vane_evidence({BudgetSensor::kBeta, kHeadingZero}, air.beta,
                             beta_slope(recording, *density, airspeed_is_true, segments.lateral.excited), known));
   return found;
 }

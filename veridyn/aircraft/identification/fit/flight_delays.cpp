@@ -46,11 +46,8 @@ SensorError after_alignment(SensorError prior, const DelayReport* report) {
 /// A servo without lag jumps between two samples. When is not known, and the regression takes the effect of each jump
 /// out (`take_out_jumps`): neither do its rows show a delay, nor does one matter to them.
 bool jumps(const FlightSignals& signals, BudgetSensor sensor) {
-  using F = FlightSignal;
   return std::ranges::any_of(signals.jumps, [&](const DeflectionJump& jump) {
-    return (sensor == BudgetSensor::kElevator && jump.control == F::kElevator) ||
-           (sensor == BudgetSensor::kAileron && jump.control == F::kAileron) ||
-           (sensor == BudgetSensor::kRudder && jump.control == F::kRudder);
+    return std::ranges::find(signals_of(sensor), jump.control) != signals_of(sensor).end();
   });
 }
 
