@@ -9,7 +9,6 @@
 #include "veridyn/estimation/judgement/evidence.hpp"
 #include "veridyn/recording/delays.hpp"
 #include "veridyn/vehicle/identification/evidence/drive_consistency.hpp"
-#include "veridyn/vehicle/identification/options/drive_model_options.hpp"
 #include "veridyn/vehicle/identification/signals/drive_segments.hpp"
 #include "veridyn/vehicle/identification/signals/drive_signals.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
