@@ -102,7 +102,8 @@ Section parameters_section(const Analysis& analysis, std::string caption) {
   Section section{.title = "Parameters", .id = "parameters"};
   Table table{.title = "Parameters",
               .caption =
-                  "95 % intervals from the covariance that allows for autocorrelated residuals. A parameter "
+                  "95 % intervals allow for autocorrelated residuals and, of flights and drives, for what is left open "
+                  "of sensors. A parameter "
                   "whose interval includes zero is marked insignificant, not set to zero. " +
                   std::move(caption),
               .columns = parameter_columns(!analysis.truth.empty())};
