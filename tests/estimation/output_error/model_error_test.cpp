@@ -75,6 +75,53 @@ TEST(ModelError, IsInTheIntervalsWhereAMotionIsMissing) {
   EXPECT_GE(inside, trials * 9 / 10);
 }
 
+/// Noise of variance `share` of which successive values correlate by 0.95, and white noise of the rest.
+VectorXd coloured_noise(std::mt19937_64& generator, double share) {
+  VectorXd slow = correlated_noise(generator, kSamples, 0.95);
+  slow *= kNoise * std::sqrt(share * kSamples / slow.squaredNorm());
+  return slow + std::sqrt(1.0 - share) * white_noise(generator);
+}
+
+/// What such noise is as one of the inputs.
+InputNoise as_input_noise(double share) {
+  double later = 0.0;
+  for (Index lag = 1; lag <= kColourLags; ++lag) later += std::pow(0.95, lag) / kColourLags;
+  const double variance = share * kNoise * kNoise;
+  return {.variance = VectorXd::Constant(1, variance),
+          .autocovariance = VectorXd::Constant(1, later * variance),
+          .memory = VectorXd::Constant(1, 1.95 / 0.05)};
+}
+
+// Coloured noise of the inputs is no error of the model; and a sample of it says less than a white one against what is
+// known before: of half of the variance with a memory of 39 samples, a twentieth.
+TEST(ModelError, DoesNotTakeNoiseOfTheInputsForIt) {
+  std::mt19937_64 generator(8);
+  constexpr int trials = 40;
+  int widened = 0, widened_without = 0;
+  double free_sigma = 0.0, known_sigma = 0.0;
+  for (int trial = 0; trial < trials; ++trial) {
+    const RowMatrix X = motion(generator);
+    const VectorXd z = X * Eigen::Vector2d(1.0, -0.5) + coloured_noise(generator, 0.5);
+    Static model({{X}});
+    OutputErrorOptions options;
+    options.model_error = true;
+    const OutputErrorEstimate without = output_error(model, {RowMatrix(z)}, options);
+    options.input_noise = as_input_noise(0.5);
+    const OutputErrorEstimate with = output_error(model, {RowMatrix(z)}, options);
+    ASSERT_TRUE(with.usable()) << with.message;
+    widened += with.covariance_by_model(0, 0) > 0.0 ? 1 : 0;
+    widened_without += without.covariance_by_model(0, 0) > 0.0 ? 1 : 0;
+    // A prior as wide as the estimate is without one halves its variance where both count for what they say.
+    free_sigma += with.parameters[0].sigma / trials;
+    model.unknowns[0].start = 1.0;
+    model.unknowns[0].prior_sigma = with.parameters[0].sigma;
+    known_sigma += output_error(model, {RowMatrix(z)}, options).parameters[0].sigma / trials;
+  }
+  EXPECT_EQ(widened_without, trials);
+  EXPECT_LE(widened, 5);
+  EXPECT_NEAR(known_sigma / free_sigma, std::sqrt(0.5), 0.1);
+}
+
 // Data that the model does not explain count for less against what is known before.
 TEST(ModelError, LetsPriorsCountForMore) {
   std::mt19937_64 generator(7);

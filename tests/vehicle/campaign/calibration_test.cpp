@@ -37,7 +37,7 @@ std::vector<Known> intervals_of(std::size_t number, Errors errors) {
                              (number / kTyres.size()) % testing::kRollingDrives, 7000 + number, {.duration_s = 60.0});
   if (errors == Errors::kSensors) {
     numerics::RandomStream draw(number, "errors of a drive's sensors");
-    test::delayed({"steer"}, 0.03 * draw.normal())(study.log.mapped.recording);
+    test::delayed({"steer"}, 0.02 * draw.normal())(study.log.mapped.recording);
     test::delayed({"accel_y"}, 0.01 * draw.normal())(study.log.mapped.recording);
     study.signals.accel_position[0] += 0.3 * draw.normal();  // it is at the centre of gravity
   }

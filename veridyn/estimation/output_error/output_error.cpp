@@ -330,7 +330,7 @@ class Estimation {
   /// What the model lacks is as large along the parameters, where no residual shows it, as in any direction beside.
   Eigen::MatrixXd covariance_by_model(const Eigen::MatrixXd& white) const {
     const RowMatrix spread = problem_.shared_root() * white;
-    return (problem_.samples_per_independent_one() - 1.0) * spread.transpose() * spread;
+    return problem_.model_error() * spread.transpose() * spread;
   }
 
   void error_bars() {
@@ -434,6 +434,10 @@ void OutputErrorOptions::validate(const ParametricModel& model) const {
   if (noise_start.size() > 0 && (noise_start.size() != p || !(noise_start.array() > 0.0).all())) {
     throw InputError("output_error.noise_start",
                      fmt::format("has {} values for {} outputs; must have one each, all > 0", noise_start.size(), p));
+  }
+  for (const Eigen::VectorXd* v : {&input_noise.variance, &input_noise.autocovariance, &input_noise.memory}) {
+    if (v->size() != 0 && v->size() != p)
+      throw InputError("output_error.input_noise", fmt::format("has {} values for {} outputs", v->size(), p));
   }
   if (noise == OutputNoise::kGiven && noise_start.size() == 0)
     throw InputError("output_error.noise_start", "is empty; the given noise needs one standard deviation an output");

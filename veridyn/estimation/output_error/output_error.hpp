@@ -32,6 +32,16 @@ enum class OutputErrorTermination {
 };
 [[nodiscard]] std::string_view to_string(OutputErrorTermination termination);
 
+/// How many samples after each are looked at for what is coloured in a residual.
+inline constexpr Eigen::Index kColourLags = 5;
+
+/// What noise of recorded inputs gives each output; empty: nothing.
+struct InputNoise {
+  Eigen::VectorXd variance = {};        ///< [unit^2]
+  Eigen::VectorXd autocovariance = {};  ///< its mean over the next kColourLags samples [unit^2]
+  Eigen::VectorXd memory = {};          ///< in how many samples it is one observation
+};
+
 /// What is estimated besides the parameters, and when the search ends.
 struct OutputErrorOptions {
   OutputNoise noise = OutputNoise::kDiagonal;
@@ -44,6 +54,7 @@ struct OutputErrorOptions {
   /// Take what is coloured in the residual for an error of the model, which is as large along the parameters as in any
   /// direction beside: see `output_error`.
   bool model_error = false;
+  InputNoise input_noise = {};                  ///< coloured too, and no error of the model
   bool free_initial_conditions = true;          ///< estimate the initial conditions of every segment
   std::vector<std::string> output_biases = {};  ///< outputs with a constant bias per segment, estimated
   double significance = 0.05;                   ///< two-sided level of the t-tests
@@ -159,9 +170,11 @@ struct OutputErrorEstimate {
 /// 1997, J. Guidance 20(1), eq. 14) with Rnu the residuals' auto- and cross-covariance under a flat-top lag window; S
 /// with the part that the segment's own unknowns explain taken out.
 ///
-/// With `model_error` the likelihood is taken to the power 1/D against priors that count in full, and (D - 1) P S'R^-1S
-/// P is added to the covariance: D = 1 + E/p with E the coloured power of the whitened residual (its autocovariance
-/// over the next five samples, what exceeds two standard errors of white noise) and p the number of shared unknowns. A
+/// With `model_error` the likelihood is taken to the power 1/D against priors that count in full, and E/p P S'R^-1S
+/// P is added to the covariance: D = M + E/p with E the coloured power of the whitened residual (its autocovariance
+/// over the next five samples, what exceeds two standard errors of white noise, and by a tenth what `input_noise`
+/// makes, which is known no better), p the number of shared unknowns and M in how many samples noise, coloured by that
+/// of the inputs, is one observation (1 without). A
 /// coarsened posterior (Miller & Dunson 2019, J. American Statistical Association 114) whose power is that of what the
 /// model misses: the samples are as wrong along the p parameters as they show to be beside.
 /// @throws InputError when sizes do not fit or an option is wrong.

@@ -98,9 +98,10 @@ double OutputErrorProblem::prior_root(const ModelParameter& unknown) const {
 }
 
 void OutputErrorProblem::update_discount() {
-  constexpr Index kLags = 5;
+  constexpr double kInputNoise = 1.1;
+  const InputNoise& inputs = options_.input_noise;
   const std::vector<RowMatrix> residuals = whitened_residuals();
-  double energy = 0.0;
+  double energy = 0.0, by_noise = 0.0;
   for (Index j = 0; j < outputs_; ++j) {
     double products = 0.0, pairs = 0.0, power = 0.0, count = 0.0;
     for (const RowMatrix& r : residuals) {
@@ -108,7 +109,7 @@ void OutputErrorProblem::update_discount() {
         if (!std::isfinite(r(k, j))) continue;
         power += r(k, j) * r(k, j);
         count += 1.0;
-        for (Index lag = 1; lag <= std::min(kLags, k); ++lag) {
+        for (Index lag = 1; lag <= std::min(kColourLags, k); ++lag) {
           if (!std::isfinite(r(k - lag, j))) continue;
           products += r(k, j) * r(k - lag, j);
           pairs += 1.0;
@@ -116,10 +117,15 @@ void OutputErrorProblem::update_discount() {
       }
     }
     if (!(power > 0.0) || !(pairs > 0.0)) continue;
-    const double coloured = products / pairs / (power / count);
-    energy += count * std::max(0.0, coloured - 2.0 / std::sqrt(pairs));
+    const bool by_inputs = inputs.autocovariance.size() > 0;
+    const double expected = by_inputs ? kInputNoise * inputs.autocovariance(j) / noise_(j, j) : 0.0;
+    const double memory = by_inputs ? inputs.memory(j) : 1.0;
+    if (by_inputs) by_noise += std::min(1.0, inputs.variance(j) / noise_(j, j)) * (memory - 1.0);
+    const double coloured = (products / pairs - expected) / (power / count);
+    energy += count * std::max(0.0, coloured - 2.0 * std::sqrt(memory / pairs));
   }
-  discount_ = 1.0 + energy / static_cast<double>(std::max<Index>(1, shared_.size()));
+  model_error_ = energy / static_cast<double>(std::max<Index>(1, shared_.size()));
+  discount_ = 1.0 + by_noise / static_cast<double>(outputs_) + model_error_;
 }
 
 double OutputErrorProblem::negative_log_likelihood() const {

@@ -62,6 +62,8 @@ class OutputErrorProblem {
   /// How many samples say what one would if the model were right (`OutputErrorOptions::model_error`): priors count by
   /// it. 1 at least.
   [[nodiscard]] double samples_per_independent_one() const { return discount_; }
+  /// What the model's error adds to it.
+  [[nodiscard]] double model_error() const { return model_error_; }
   /// 1/sigma of an unknown's prior against the samples; 0 without one.
   [[nodiscard]] double prior_root(const ModelParameter& unknown) const;
 
@@ -129,6 +131,7 @@ class OutputErrorProblem {
   std::vector<Segment> segments_;
   bool keeps_ = false;  // simulations with derivatives, for another R
   double discount_ = 1.0;
+  double model_error_ = 0.0;
   Eigen::MatrixXd noise_;
   Eigen::MatrixXd whitener_;  // inverse of the Cholesky factor of R
   Eigen::VectorXd noise_floor_;

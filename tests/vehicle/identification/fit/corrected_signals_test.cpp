@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/vehicle/identification/options/drive_unknown.hpp"
 
 namespace veridyn::vehicle {
@@ -39,6 +40,27 @@ TEST(CorrectedSignals, AreInTheTimeOfTheWheelsAndAtTheAccelerometersPlace) {
   }
   EXPECT_DOUBLE_EQ(corrected.accel_position[0], 0.6);
   EXPECT_EQ(corrected.accel_position[2], 0.1);
+}
+
+// A shift brings a gap, or what lies beyond the recording, to where something was recorded.
+TEST(CorrectedSignals, LeaveNoSampleWithoutAValueThatHadOne) {
+  DriveSignals recorded;
+  recorded.grid = {.begin = 0.0, .step = kGridStep, .count = 500};
+  recorded[DriveSignal::kSteer].value = wave(0.025);
+  for (std::size_t k = 200; k < 220; ++k) recorded[DriveSignal::kSteer].value[k] = kNaN;
+  recorded[DriveSignal::kSteer].value.back() = kNaN;
+  Eigen::VectorXd theta = Eigen::VectorXd::Zero(kDriveUnknowns);
+  for (const double delay : {-0.025, 0.025}) {
+    theta(static_cast<Eigen::Index>(DriveUnknown::kSteerDelay)) = delay;
+    const std::vector<double>& before = recorded[DriveSignal::kSteer].value;
+    const DriveSignals corrected = corrected_signals(recorded, theta);
+    const std::vector<double>& after = corrected[DriveSignal::kSteer].value;
+    for (std::size_t k = 0; k < 500; ++k) {
+      EXPECT_EQ(std::isfinite(after[k]), std::isfinite(before[k])) << k;
+      // 2 rad/s over the whole shift, at most.
+      if (std::isfinite(after[k])) EXPECT_NEAR(after[k], before[k], 2.0 * 0.03) << k;
+    }
+  }
 }
 
 }  // namespace

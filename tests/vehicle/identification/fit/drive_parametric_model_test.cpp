@@ -99,136 +99,59 @@ TEST(DriveParametricModel, SensitivitiesAreThoseOfFiniteDifferences) {
   }
 }
 
-/// The model of a structure on noisy signals, with the filter at its start; outputs are not delayed.
-struct Whitened {
-  DriveParametricModel plain, white;
-  DriveWhitening filter;
-  Eigen::VectorXd theta;
-};
-
-Whitened whitened(const DriveSignals& signals, DriveStructure structure) {
-  const DriveModelOptions options = with_structure({}, structure);
-  const std::vector<TimeSpan> spans{{4.0, 8.0}};
-  DriveParametricModel plain(signals, spans, family_car(), options);
-  const Eigen::VectorXd theta = theta_of(plain);
-  DriveWhitening filter = plain.whitening(theta);
-  DriveParametricModel white = plain.weighed(filter);
-  return {std::move(plain), std::move(white), std::move(filter), theta};
-}
-
-// The filter is the same whatever the parameters are.
-TEST(DriveParametricModel, SensitivitiesOfWhitenedOutputsAreThoseOfFiniteDifferences) {
-  const DriveSignals signals = rolling_signals(reference_drive_sensors());
-  for (const DriveStructure structure :
-       {DriveStructure::kBicycle, DriveStructure::kRoll, DriveStructure::kRelaxation}) {
-    const Whitened model = whitened(signals, structure);
-    ASSERT_FALSE(model.filter.empty());
-    std::vector<Eigen::Index> active;
-    for (Eigen::Index i = 0; i < model.theta.size(); ++i)  // outputs of which no delay is free are not delayed
-      if (i != index_of(DriveUnknown::kYawRateDelay) && i != index_of(DriveUnknown::kAccelYDelay)) active.push_back(i);
-    expect_derivatives(model.white, model.theta, active, std::string(to_string(structure)));
-  }
-}
-
-// What a model measures of itself leaves no residual, with the filter as without.
-TEST(DriveParametricModel, WhiteningLeavesTheModelsOwnOutputsWhatIsMeasured) {
-  for (const DriveStructure structure :
-       {DriveStructure::kBicycle, DriveStructure::kRoll, DriveStructure::kRelaxation}) {
-    DriveSignals signals = rolling_signals(reference_drive_sensors());
-    const Whitened noisy = whitened(signals, structure);
-    ASSERT_FALSE(noisy.filter.empty());
-    const estimation::RowMatrix own = output_of(noisy.plain, noisy.theta);
-    const std::size_t first = noisy.plain.first_sample(0);
-    for (const DriveSignal signal : enumerators<DriveSignal, kDriveSignals>()) {
-      for (std::size_t j = 0; j < noisy.plain.outputs().size(); ++j) {
-        if (noisy.plain.outputs()[j].name != kDriveSignalNames[signal]) continue;
-        for (Eigen::Index k = 0; k < own.rows(); ++k) signals[signal].value[first + k] = own(k, j);
-      }
-    }
-    const std::vector<TimeSpan> spans{{4.0, 8.0}};
-    const DriveParametricModel model =
-        DriveParametricModel(signals, spans, family_car(), with_structure({}, structure)).weighed(noisy.filter);
-    const estimation::RowMatrix measured = model.measured()[0];
-    const estimation::RowMatrix predicted = output_of(model, noisy.theta);
-    EXPECT_LT((measured - predicted).cwiseAbs().maxCoeff(), 1e-12) << to_string(structure);
-    EXPECT_GT((predicted - own).norm(), 0.1 * own.norm()) << to_string(structure);  // the filter does something
-  }
-}
-
-// The equations of `DriveWhitening` on the residual itself: the filtered difference is the difference of the filtered.
-// A sample that was not measured corrects nothing and leaves no other without a value.
-TEST(DriveParametricModel, WhiteningIsLinear) {
-  DriveSignals signals = rolling_signals(reference_drive_sensors());
-  const std::size_t first = whitened(signals, DriveStructure::kRoll).plain.first_sample(0);
-  for (std::size_t k = 100; k < 120; ++k) signals[DriveSignal::kAccelY].value[first + k] = kNaN;
-  const Whitened model = whitened(signals, DriveStructure::kRoll);
-  const estimation::RowMatrix residual = model.plain.measured()[0] - output_of(model.plain, model.theta);
-  const estimation::RowMatrix white = model.white.measured()[0] - output_of(model.white, model.theta);
-  Eigen::VectorXd state = Eigen::VectorXd::Zero(model.filter.filter[0].transition.rows());
-  int missing = 0;
-  for (Eigen::Index k = 0; k < residual.rows(); ++k) {
-    DriveWhitening::Filter f;
-    model.filter.at(signals[DriveSignal::kSpeed].value[first + k], f);
-    Eigen::VectorXd expected = residual.row(k).transpose() - f.output * state;
-    for (Eigen::Index j = 0; j < expected.size(); ++j) {
-      if (std::isnan(expected(j))) {
-        EXPECT_TRUE(std::isnan(white(k, j)));
-        expected(j) = 0.0;
-        ++missing;
-      } else {
-        EXPECT_NEAR(white(k, j), expected(j), 1e-12) << k << " " << j;
-      }
-    }
-    state = f.transition * state + f.gain * expected;
-  }
-  EXPECT_EQ(missing, 20);
-}
-
-/// Correlation of successive values.
-double lag1(const Eigen::VectorXd& x) {
-  const Eigen::Index n = x.size();
-  return x.head(n - 1).dot(x.tail(n - 1)) / x.squaredNorm();
-}
-
-// At the truth what is left of a drive is the noise of its sensors and what that of the steering moved, which comes
-// slowly: correlations of 0.7 and 0.9 from one sample to the next. The filter takes the noise that the low-pass leaves
-// for that of two poles; what it is not takes a tenth back in accel_y, which answers the steering at once.
-TEST(DriveParametricModel, WhiteningTakesTheColourOfTheSteeringsNoiseOut) {
+// Against ten drives: how far the outputs are from those of exact steering, and the mean autocovariance of that over
+// the next five samples, within a tenth.
+TEST(DriveParametricModel, KnowsWhatNoiseOfTheSteeringDoesToItsOutputs) {
   DriveSensorSet sensors = reference_drive_sensors();
   for (DriveSensor& sensor : sensors.sensors) sensor.bias_sigma = 0.0;
-  sensors[DriveSensorKind::kSteer].sigma *= 3.0;
-  const DriveSignals signals =
-      prepare_drive_signals(mapped(record_drive(lively_drive(family_car(), 1, 0.02, 44.0), sensors, 1)), {});
+  DriveSensorSet exact = sensors;
+  exact[DriveSensorKind::kSteer].sigma = 0.0;
+  const VehicleTrajectory drive = lively_drive(family_car(), 1, 0.02, 44.0);
   const std::vector<TimeSpan> spans{{4.0, 40.0}};
-  const DriveParametricModel plain(signals, spans, family_car(), {});
-  const Eigen::VectorXd theta = theta_of(plain);
-  const DriveParametricModel white = plain.weighed(plain.whitening(theta));
-  const auto residual = [&](const DriveParametricModel& model) {
-    const estimation::RowMatrix all = model.measured()[0] - output_of(model, theta);
-    return Eigen::MatrixXd(all.bottomRows(all.rows() - 200));  // without the transient of where it begins
+  const auto outputs = [&](const DriveSensorSet& recorded_by, std::uint64_t seed, Eigen::MatrixXd& output) {
+    const DriveSignals signals = prepare_drive_signals(mapped(record_drive(drive, recorded_by, seed)), {});
+    const DriveParametricModel model(signals, spans, family_car(), {});
+    const Eigen::MatrixXd all = output_of(model, theta_of(model));
+    output = all.bottomRows(all.rows() - 200);  // without the transient of where it begins
+    return model.steering_noise_effect(theta_of(model));
   };
-  const Eigen::MatrixXd before = residual(plain), after = residual(white);
-  for (Eigen::Index j = 0; j < after.cols(); ++j) {
-    EXPECT_GT(lag1(before.col(j)), 0.6) << plain.outputs()[j].name;
-    EXPECT_LT(std::abs(lag1(after.col(j))), 0.13) << plain.outputs()[j].name;
-    EXPECT_LT(after.col(j).norm(), 0.65 * before.col(j).norm()) << plain.outputs()[j].name;
+  Eigen::MatrixXd without, with;
+  EXPECT_EQ(outputs(exact, 1, without).sigma.norm(), 0.0);
+  Eigen::VectorXd variance = Eigen::VectorXd::Zero(2), later = variance;
+  DriveParametricModel::SteeringEffect expected;
+  constexpr int kDrives = 10;
+  for (int i = 0; i < kDrives; ++i) {
+    expected = outputs(sensors, static_cast<std::uint64_t>(i), with);
+    const Eigen::MatrixXd moved = with - without;
+    const Eigen::Index n = moved.rows() - estimation::kColourLags;
+    for (Eigen::Index j = 0; j < 2; ++j) {
+      const auto count = static_cast<double>(n * kDrives);
+      variance(j) += moved.col(j).head(n).squaredNorm() / count;
+      for (Eigen::Index lag = 1; lag <= estimation::kColourLags; ++lag)
+        later(j) += moved.col(j).head(n).dot(moved.col(j).segment(lag, n)) / count / estimation::kColourLags;
+    }
+  }
+  for (Eigen::Index j = 0; j < 2; ++j) {
+    EXPECT_NEAR(variance(j) / std::pow(expected.sigma(j), 2), 1.0, 0.1) << j;
+    EXPECT_NEAR(later(j) / expected.autocovariance(j), 1.0, 0.1) << j;
+    EXPECT_GT(expected.memory(j), 5.0) << j;
   }
 }
 
-TEST(DriveParametricModel, HasNoFilterWhereTheResidualIsWhiteOrSmoothed) {
+TEST(DriveParametricModel, HasNoNoiseOfTheSteeringWhereItIsExactOrSmoothed) {
   const std::vector<TimeSpan> spans{{4.0, 8.0}};
-  const auto filter = [&](const DriveSignals& signals, const DriveModelOptions& options) {
+  const auto effect = [&](const DriveSignals& signals, const DriveModelOptions& options) {
     const DriveParametricModel model(signals, spans, family_car(), options);
-    return model.whitening(theta_of(model));
+    return model.steering_noise_effect(theta_of(model)).sigma.maxCoeff();
   };
   const DriveSignals noisy = rolling_signals(reference_drive_sensors());
-  EXPECT_FALSE(filter(noisy, {}).empty());
+  EXPECT_GT(effect(noisy, {}), 0.0);
   DriveModelOptions smoothed;
   smoothed.smoothing_Hz = 4.0;
-  EXPECT_TRUE(filter(noisy, smoothed).empty());
+  EXPECT_EQ(effect(noisy, smoothed), 0.0);
   DriveSignals exact_steering = noisy;
   exact_steering[DriveSignal::kSteer].sigma = 0.0;
-  EXPECT_TRUE(filter(exact_steering, {}).empty());
+  EXPECT_EQ(effect(exact_steering, {}), 0.0);
 }
 
 // An accelerometer on a body that leans by phi shows g phi more; with gravity taken off by a measured roll it does not,

@@ -31,7 +31,7 @@ ProfiledDrive profiled(double rms, double duration, const VehicleIdentifyOptions
   const VehicleProblem problem{signals, segments, car, signal_options, options};
   Progress progress;
   ProfiledDrive out;
-  out.estimate = estimate_by_output_error(problem, nullptr, {}, {}, SearchEffort::kToTheEnd, progress);
+  out.estimate = estimate_by_output_error(problem, nullptr, {}, SearchEffort::kToTheEnd, progress);
   out.profiles = profile_drive(problem, nullptr, out.estimate, widening, progress);
   return out;
 }
@@ -81,8 +81,7 @@ TEST(VehicleProfiles, AreOpenWhereADriveExcludesNothing) {
   options.profiles = {"I_z"};
   const VehicleProblem problem{signals, segments, car, signal_options, options};
   Progress progress;
-  const OutputErrorResult estimate =
-      estimate_by_output_error(problem, nullptr, {}, {}, SearchEffort::kToTheEnd, progress);
+  const OutputErrorResult estimate = estimate_by_output_error(problem, nullptr, {}, SearchEffort::kToTheEnd, progress);
   const estimation::ProfileResult r = profile_drive(problem, nullptr, estimate, 1.0, progress);
   ASSERT_TRUE(r.usable()) << r.message;
   const estimation::ParameterProfile& I_z = r.profiles.front();

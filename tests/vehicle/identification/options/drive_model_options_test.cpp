@@ -163,6 +163,13 @@ TEST(DriveModelOptions, HaveTheBudgetFreeUnlessItIsKnown) {
     EXPECT_FALSE(known.free[budget.unknown]) << kDriveUnknownNames[budget.unknown];
     EXPECT_TRUE(known.free[DriveUnknown::kCf]);
   }
+  // What is known has no prior: a search refuses one of no width.
+  const DriveModelOptions known = read_options("prior = { steer_delay = 0, roll_steer_f = 0 }");
+  for (const DriveUnknown u : {DriveUnknown::kSteerDelay, DriveUnknown::kRollSteerF}) {
+    const estimation::ModelParameter p = model_parameter(u, with_structure(known, DriveStructure::kRoll), 2.7);
+    EXPECT_TRUE(p.fixed);
+    EXPECT_TRUE(std::isinf(p.prior_sigma));
+  }
   EXPECT_THROW(read_options("prior = { trail = -1 }"), InputError);
   EXPECT_THROW(read_options("prior = { steer_bias = 0 }"), InputError);
 }

@@ -92,7 +92,7 @@ TEST(TriedStructure, PassesOverFitsThatAreNotUsable) {
   tried[0].usable = tried[1].usable = false;
   tried[0].negative_log_likelihood = tried[1].negative_log_likelihood = kNaN;
   tried[2].negative_log_likelihood = 0.0;
-  tried[3].negative_log_likelihood = -2.0;
+  tried[3].negative_log_likelihood = 4.0;
   EXPECT_EQ(choose_structure(tried), 2U);
   tried[3].negative_log_likelihood = -kJust;
   EXPECT_EQ(choose_structure(tried), 3U);
@@ -112,9 +112,14 @@ TEST(TriedStructure, TakesNoEffectWhoseFitIsTheSimplerOneAtABound) {
   EXPECT_EQ(probability_against(more, taken), 0.0);
 }
 
-// Every tyre lags: beyond roll a probability of 95 % is enough, below roll it is not.
+// Every tyre lags: that is taken unless it is improbable. Beyond it a probability of 95 % is enough, below roll it is
+// not.
 TEST(TriedStructure, TakesWhatIsProbableBeyondRoll) {
-  std::vector<TriedStructure> tried = {fit(DriveStructure::kRoll, 0.0), fit(DriveStructure::kRelaxation, -3.0)};
+  std::vector<TriedStructure> tried = {fit(DriveStructure::kRoll, 0.0), fit(DriveStructure::kRelaxation, 2.9)};
+  EXPECT_EQ(choose_structure(tried), 1U);
+  tried[1].negative_log_likelihood = 3.0;
+  EXPECT_EQ(choose_structure(tried), 0U);
+  tried = {fit(DriveStructure::kRelaxation, 0.0), fit(DriveStructure::kSaturation, -3.0)};
   EXPECT_EQ(choose_structure(tried), 1U);
   tried[1].negative_log_likelihood = -2.9;
   EXPECT_EQ(choose_structure(tried), 0U);

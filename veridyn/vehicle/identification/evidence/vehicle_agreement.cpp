@@ -33,10 +33,9 @@ std::optional<PartsAgreement> by_output_error(const VehicleProblem& problem, con
   model_options.gravity = problem.signal_options.gravity;
   OutputErrorProblem there_problem{
       DriveParametricModel(problem.signals, problem.segments.holdout, start, model_options), {}};
-  there_problem.weigh(here.whitening);
+  there_problem.begin_at(here.raw.theta);
   const DriveParametricModel& model = there_problem.model;
   estimation::OutputErrorOptions& options = there_problem.options;
-  options.search_start = within_bounds(model, here.raw.theta);
   options.significance = problem.options.significance;
   // From where the other part ended: if both are one vehicle, few steps of Gauss-Newton are as good as all (Le Cam's
   // one-step estimator), and if they are not, few show it.

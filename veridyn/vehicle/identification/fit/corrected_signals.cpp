@@ -1,5 +1,7 @@
 #include "veridyn/vehicle/identification/fit/corrected_signals.hpp"
 
+#include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "veridyn/vehicle/identification/fit/sampled_input.hpp"
@@ -8,11 +10,25 @@
 namespace veridyn::vehicle {
 namespace {
 
-/// As it was `later` seconds after each moment of the grid.
+/// As it was `later` seconds after each moment of the grid; beside gaps, and at both ends, as near to that as it was
+/// recorded.
 void shift(std::vector<double>& value, double later, double step) {
   if (value.empty() || later == 0.0) return;
   const std::vector<double> recorded = value;
-  for (std::size_t k = 0; k < value.size(); ++k) value[k] = between(recorded, static_cast<double>(k) + later / step);
+  const double samples = later / step;
+  for (std::size_t k = 0; k < value.size(); ++k) {
+    if (!std::isfinite(recorded[k])) continue;
+    double moved = samples;
+    for (;;) {
+      const double there = between(recorded, static_cast<double>(k) + moved);
+      if (std::isfinite(there)) {
+        value[k] = there;
+        break;
+      }
+      if (std::abs(moved) < 1.0) break;  // it stays
+      moved -= std::copysign(1.0, moved);
+    }
+  }
 }
 
 }  // namespace

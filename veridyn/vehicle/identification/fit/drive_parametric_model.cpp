@@ -9,6 +9,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/estimation/output_error/output_error.hpp"
 #include "veridyn/numerics/linear_algebra/general_eigen.hpp"
 #include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 #include "veridyn/numerics/linear_systems/lyapunov.hpp"
@@ -26,8 +27,6 @@ constexpr double kLargestYawRate = 50.0;
 
 /// Noise of the steering over its rms below which nothing is taken off.
 constexpr double kNoNoise = 1e-4;
-/// Speeds at which the whitening filter is computed.
-constexpr int kFilterSpeeds = 9;
 
 /// Derivatives with respect to initial conditions begin as one and count for nothing below this.
 constexpr double kForgotten = 1e-8;
@@ -121,40 +120,9 @@ std::vector<estimation::RowMatrix> DriveParametricModel::measured() const {
     for (Eigen::Index k = 0; k < s.samples; ++k)
       for (std::size_t j = 0; j < compared_.size(); ++j)
         m(k, signed_index(j)) = compared_[j].value[s.begin + static_cast<std::size_t>(k)];
-    if (!whitening_.empty()) whiten(s, m);
     all.push_back(std::move(m));
   }
   return all;
-}
-
-DriveParametricModel DriveParametricModel::weighed(DriveWhitening whitening) const {
-  DriveParametricModel out = *this;
-  out.whitening_ = std::move(whitening);
-  return out;
-}
-
-template <typename Scalar>
-void DriveParametricModel::whiten(const Segment& segment, Outputs<Scalar>& output) const {
-  const Eigen::Index states = whitening_.filter.front().transition.rows();
-  Eigen::Matrix<Scalar, Eigen::Dynamic, 1> s(states), next(states), white(output.cols());
-  s.setConstant(Scalar(0.0));
-  DriveWhitening::Filter f;
-  for (Eigen::Index k = 0; k < output.rows(); ++k) {
-    const std::size_t sample = segment.begin + static_cast<std::size_t>(k);
-    whitening_.at(speed_[sample], f);
-    for (Eigen::Index j = 0; j < output.cols(); ++j) {
-      white(j) = output(k, j);
-      for (Eigen::Index i = 0; i < states; ++i) white(j) -= f.output(j, i) * s(i);
-      output(k, j) = white(j);
-      if (!std::isfinite(compared_[at(j)].value[sample])) white(j) = Scalar(0.0);
-    }
-    for (Eigen::Index i = 0; i < states; ++i) {
-      next(i) = Scalar(0.0);
-      for (Eigen::Index j = 0; j < states; ++j) next(i) += f.transition(i, j) * s(j);
-      for (Eigen::Index j = 0; j < output.cols(); ++j) next(i) += f.gain(i, j) * white(j);
-    }
-    s.swap(next);
-  }
 }
 
 bool DriveParametricModel::delays_outputs(double yaw_rate_delay, double accel_delay) const {
@@ -374,9 +342,7 @@ bool DriveParametricModel::simulate(const Segment& segment, const Parameters<Sca
   for (std::size_t i = 0; i < offsets.size(); ++i)
     theta(static_cast<Eigen::Index>(offsets[i])) += given(given.size() - signed_index(offsets.size() - i));
   return with_model(theta, [&](const auto& model, auto states) {
-    const bool drives = drive<decltype(states)::value>(segment, model, theta, extent, output);
-    if (drives && !whitening_.empty()) whiten(segment, output);
-    return drives;
+    return drive<decltype(states)::value>(segment, model, theta, extent, output);
   });
 }
 
@@ -442,21 +408,9 @@ DriveNoise DriveParametricModel::noise_at(double u, const Eigen::VectorXd& theta
       sigma);
 }
 
-DriveWhitening DriveParametricModel::whitening(const Eigen::VectorXd& theta) const {
-  const bool all_noisy = std::ranges::all_of(compared_, [](const Compared& c) { return c.sigma > 0.0; });
-  if (!(steer_sigma_ > 0.0) || !(steer_error_share_ > 0.0) || !all_noisy || segments_.empty()) return {};
-  const SpeedRange range = speeds();
-  DriveWhitening out;
-  for (int i = 0; i < kFilterSpeeds; ++i) {
-    out.speed.push_back(range.slowest + (range.fastest - range.slowest) * i / (kFilterSpeeds - 1));
-    out.filter.push_back(whitening_filter(noise_at(out.speed.back(), theta)));
-  }
-  return out;
-}
-
 DriveParametricModel::SteeringEffect DriveParametricModel::steering_noise_effect(const Eigen::VectorXd& theta) const {
   const auto outputs = signed_index(compared_.size());
-  SteeringEffect out{Eigen::VectorXd::Zero(outputs), Eigen::VectorXd::Ones(outputs)};
+  SteeringEffect out{Eigen::VectorXd::Zero(outputs), Eigen::VectorXd::Ones(outputs), Eigen::VectorXd::Zero(outputs)};
   if (!(steer_sigma_ > 0.0) || !(steer_error_share_ > 0.0) || segments_.empty()) return out;
   const SpeedRange range = speeds();
   const DriveNoise noise = noise_at(0.5 * (range.slowest + range.fastest), theta);
@@ -468,6 +422,12 @@ DriveParametricModel::SteeringEffect DriveParametricModel::steering_noise_effect
   const Eigen::MatrixXd rest = Eigen::MatrixXd::Identity(noise.F.rows(), noise.F.cols()) - noise.F;
   const Eigen::VectorXd sum =
       (noise.C * numerics::HouseholderQr(rest).solve(Eigen::MatrixXd(P * noise.C.transpose()))).diagonal();
+  Eigen::MatrixXd later = P;
+  for (Eigen::Index lag = 0; lag < estimation::kColourLags; ++lag) {
+    later = noise.F * later;
+    out.autocovariance +=
+        (noise.C * later * noise.C.transpose()).diagonal() / static_cast<double>(estimation::kColourLags);
+  }
   for (Eigen::Index j = 0; j < outputs; ++j)
     if (variance(j) > 0.0) out.memory(j) = std::max(1.0, 2.0 * sum(j) / variance(j) - 1.0);
   return out;

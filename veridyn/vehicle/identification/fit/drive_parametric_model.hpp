@@ -9,7 +9,7 @@
 
 #include "veridyn/estimation/open_loop/open_loop_model.hpp"
 #include "veridyn/estimation/output_error/autodiff_model.hpp"
-#include "veridyn/vehicle/identification/fit/drive_whitening.hpp"
+#include "veridyn/vehicle/identification/fit/drive_noise.hpp"
 #include "veridyn/vehicle/identification/options/drive_model_options.hpp"
 #include "veridyn/vehicle/identification/signals/drive_signals.hpp"
 #include "veridyn/vehicle/model/rolling_bicycle.hpp"
@@ -45,10 +45,11 @@ inline constexpr int kDriveStride = 12;
 ///
 /// Noise of the recorded steering would take some of every gain away. By default the steering is therefore low-passed
 /// to its own band (`numerics::band_limited`), and the outputs are not; the noise left in that band moves the model,
-/// and the residual is coloured by it. `whitening` gives the filter that takes the colour out, which is held fixed
-/// while the parameters are fitted: any fixed filter leaves them without bias, this one makes intervals as small as
-/// the noise allows. With `DriveModelOptions::smoothing_Hz` inputs and outputs are smoothed alike instead: a linear
-/// time-invariant system commutes with that exactly, the bicycle to second order in the kernel's length.
+/// and the residual is coloured by it (`steering_noise_effect`), which intervals allow for. A filter that takes the
+/// colour out would make them smaller, and wrong: it weighs most what the steering's noise distorts most, whose
+/// derivatives have the same noise as the residual, and drew delays of drives without any to -25 ms. With
+/// `DriveModelOptions::smoothing_Hz` inputs and outputs are smoothed alike instead: a linear time-invariant system
+/// commutes with that exactly, the bicycle to second order in the kernel's length.
 ///
 /// What the model leaves out shows as autocorrelation of the residual: load transfer, compliance of the steering
 /// (`steer_scale`, indistinguishable from C_f). Diverged: |v| above 2 u, |r| above 50 rad/s.
@@ -88,21 +89,15 @@ class DriveParametricModel
   /// What was measured of the outputs, per segment, smoothed; NaN where missing.
   [[nodiscard]] std::vector<estimation::RowMatrix> measured() const override;
 
-  /// The filter that whitens the residual at `theta`, over the speeds of the segments: white noise of the steering as
-  /// it is of the signals, which acts on the outputs of its sample too, and white noise of the outputs; delays of the
-  /// outputs are left out (any fixed filter leaves parameters without bias). Empty where outputs are smoothed or the
-  /// steering has no noise.
-  [[nodiscard]] DriveWhitening whitening(const Eigen::VectorXd& theta) const;
   /// What noise of the steering does to each output: its standard deviation, and in how many samples it is one
   /// observation (variance of the mean of many over that of as many independent ones).
   struct SteeringEffect {
     Eigen::VectorXd sigma, memory;
+    Eigen::VectorXd autocovariance;  ///< its mean over the next estimation::kColourLags samples
   };
   /// Of what is left of that noise at `theta`, at the mean speed of the segments; 0 and 1 without noise, or where the
   /// vehicle is unstable there.
   [[nodiscard]] SteeringEffect steering_noise_effect(const Eigen::VectorXd& theta) const;
-  /// The model whose outputs, and what is compared with them, go through a filter.
-  [[nodiscard]] DriveParametricModel weighed(DriveWhitening whitening) const;
 
   /// Fills `output`; false where the motion diverged. Compiled for double and Jets.
   template <typename Scalar>
@@ -160,9 +155,6 @@ class DriveParametricModel
   };
   /// Over all segments.
   [[nodiscard]] SpeedRange speeds() const;
-  /// Filters the outputs of a segment in place; where nothing was measured the filter is not corrected.
-  template <typename Scalar>
-  void whiten(const Segment& segment, Outputs<Scalar>& output) const;
   [[nodiscard]] bool delays_outputs(double yaw_rate_delay, double accel_delay) const;
 
   numerics::UniformGrid grid_;
@@ -177,7 +169,6 @@ class DriveParametricModel
   VehicleParameters<double> start_;
   DriveModelOptions options_;
   double smoothing_Hz_ = 0.0;
-  DriveWhitening whitening_;
   std::vector<estimation::ModelParameter> parameters_;
   std::vector<estimation::ModelOutput> outputs_;
   std::vector<Segment> segments_;

@@ -13,9 +13,6 @@ using estimation::ParameterStatus;
 constexpr double kDefaultPass_Hz = 2.0;
 /// Longest correlation of residuals that is looked for.
 constexpr double kLongestLag_s = 2.0;
-/// Rounds of whitening, and the change of parameters [sigma] from which they are settled.
-constexpr int kMostWeighings = 3;
-constexpr double kSettled = 0.2;
 /// Of a search that only compares structures.
 constexpr int kRelaxationsToCompare = 4, kStepsToCompare = 10;
 constexpr double kToleranceToCompare = 0.1;
@@ -337,75 +334,32 @@ OutputErrorProblem output_error_problem(const VehicleProblem& problem, const Equ
           options};
 }
 
-void OutputErrorProblem::weigh(const DriveWhitening& whitening) {
-  if (whitening.empty()) return;
-  model = model.weighed(whitening);
-  // Noise of the steering is in all outputs at once.
-  options.noise = estimation::OutputNoise::kFull;
+void OutputErrorProblem::begin_at(const Eigen::VectorXd& theta) {
+  options.search_start = within_bounds(model, theta);
+  const DriveParametricModel::SteeringEffect by_steering = model.steering_noise_effect(options.search_start);
+  options.input_noise = {by_steering.sigma.cwiseAbs2(), by_steering.autocovariance, by_steering.memory};
 }
-
-namespace {
-
-OutputErrorResult fitted(const VehicleProblem& problem, const EquationErrorEstimates* equation_error,
-                         OutputErrorProblem fitted, const Eigen::VectorXd& search_start, Progress& progress) {
-  fitted.options.search_start = within_bounds(fitted.model, search_start);
-  OutputErrorResult out;
-  out.raw = estimation::output_error(fitted.model, fitted.model.measured(), fitted.options, progress);
-  out.estimate = estimate_of(problem, equation_error != nullptr ? equation_error->slopes : GeometrySlopes{}, out.raw);
-  return out;
-}
-
-/// The largest change of a parameter in standard errors.
-double largest_change(const estimation::OutputErrorEstimate& before, const estimation::OutputErrorEstimate& after) {
-  double largest = 0.0;
-  for (Eigen::Index i = 0; i < after.theta.size(); ++i) {
-    const double sigma = std::sqrt(after.covariance(i, i));
-    if (std::isfinite(sigma) && sigma > 0.0)
-      largest = std::max(largest, std::abs(after.theta(i) - before.theta(i)) / sigma);
-  }
-  return largest;
-}
-
-}  // namespace
 
 OutputErrorResult estimate_by_output_error(const VehicleProblem& problem, const EquationErrorEstimates* equation_error,
-                                           const Eigen::VectorXd& search_start, const DriveWhitening& weighing,
-                                           SearchEffort effort, Progress& progress) {
+                                           const Eigen::VectorXd& search_start, SearchEffort effort,
+                                           Progress& progress) {
   OutputErrorProblem given = output_error_problem(problem, equation_error);
-  given.weigh(weighing);
   if (effort == SearchEffort::kOnce) given.options.max_relaxations = 1;
   if (effort == SearchEffort::kToCompare) {
     given.options.max_relaxations = kRelaxationsToCompare;
     given.options.max_steps = kStepsToCompare;
     given.options.tolerance = kToleranceToCompare;
   }
-  OutputErrorResult out = fitted(problem, equation_error, std::move(given), search_start, progress);
-  out.whitening = weighing;
+  Eigen::VectorXd start = search_start;
+  if (start.size() == 0) {
+    start.resize(kDriveUnknowns);
+    for (Eigen::Index i = 0; i < start.size(); ++i) start(i) = given.model.parameters()[i].start;
+  }
+  given.begin_at(start);
+  OutputErrorResult out;
+  out.raw = estimation::output_error(given.model, given.model.measured(), given.options, progress);
+  out.estimate = estimate_of(problem, equation_error != nullptr ? equation_error->slopes : GeometrySlopes{}, out.raw);
   return out;
-}
-
-OutputErrorResult refined(OutputErrorResult estimate, const VehicleProblem& problem,
-                          const EquationErrorEstimates* equation_error, Progress& progress) {
-  if (!estimate.raw.usable()) return estimate;
-  const OutputErrorProblem given = output_error_problem(problem, equation_error);
-  DriveWhitening whitening = given.model.whitening(estimate.raw.theta);
-  if (whitening.empty()) {
-    OutputErrorResult next =
-        estimate_by_output_error(problem, equation_error, estimate.raw.theta, {}, SearchEffort::kToTheEnd, progress);
-    return next.raw.has_estimate() || !progress.interrupted() ? std::move(next) : std::move(estimate);
-  }
-  for (int round = 0; round < kMostWeighings && !progress.interrupted(); ++round) {
-    if (round > 0) whitening = given.model.whitening(estimate.raw.theta);
-    OutputErrorProblem weighed = given;
-    weighed.weigh(whitening);
-    OutputErrorResult next = fitted(problem, equation_error, std::move(weighed), estimate.raw.theta, progress);
-    if (!next.raw.usable()) break;
-    const double moved = largest_change(estimate.raw, next.raw);
-    estimate = std::move(next);
-    estimate.whitening = whitening;
-    if (moved < kSettled) break;
-  }
-  return estimate;
 }
 
 Eigen::VectorXd within_bounds(const DriveParametricModel& model, Eigen::VectorXd theta) {

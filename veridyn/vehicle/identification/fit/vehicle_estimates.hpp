@@ -10,7 +10,6 @@
 #include "veridyn/estimation/output_error/output_error.hpp"
 #include "veridyn/vehicle/identification/fit/axle_estimate.hpp"
 #include "veridyn/vehicle/identification/fit/drive_parametric_model.hpp"
-#include "veridyn/vehicle/identification/fit/drive_whitening.hpp"
 #include "veridyn/vehicle/identification/fit/vehicle_estimate.hpp"
 #include "veridyn/vehicle/identification/fit/vehicle_problem.hpp"
 
@@ -34,7 +33,6 @@ struct EquationErrorEstimates {
 struct OutputErrorResult {
   estimation::OutputErrorEstimate raw;
   VehicleEstimate estimate;
-  DriveWhitening whitening = {};  ///< by which its residual was weighed; may be empty
 };
 
 /// The regressions over some spans, with `known` for mass, a and b.
@@ -52,24 +50,18 @@ enum class SearchEffort {
 };
 
 /// Starts from the equation error where that is known well enough; `equation_error` may be null. `search_start`: of all
-/// DriveUnknowns, where the search begins instead; may be empty, as may be the filter that weighs the residual.
+/// DriveUnknowns, where the search begins instead; may be empty.
 [[nodiscard]] OutputErrorResult estimate_by_output_error(const VehicleProblem& problem,
                                                          const EquationErrorEstimates* equation_error,
-                                                         const Eigen::VectorXd& search_start,
-                                                         const DriveWhitening& weighing, SearchEffort effort,
+                                                         const Eigen::VectorXd& search_start, SearchEffort effort,
                                                          Progress& progress);
-
-/// An estimate followed to the end. Where the steering has noise its residual is whitened, in rounds: the filter is
-/// that of the estimate before.
-[[nodiscard]] OutputErrorResult refined(OutputErrorResult estimate, const VehicleProblem& problem,
-                                        const EquationErrorEstimates* equation_error, Progress& progress);
 
 /// The drive's model, begun where the equation error is known well enough, and how it is fitted.
 struct OutputErrorProblem {
   DriveParametricModel model;
   estimation::OutputErrorOptions options;
-  /// Whitens the residual, whose outputs are correlated then; an empty filter changes nothing.
-  void weigh(const DriveWhitening& whitening);
+  /// Where the search begins: `theta` within the bounds, with what noise of the steering gives the outputs there.
+  void begin_at(const Eigen::VectorXd& theta);
 };
 /// The output-error problem of a drive; `equation_error` may be null, `search_factor` as of DriveModelOptions.
 [[nodiscard]] OutputErrorProblem output_error_problem(const VehicleProblem& problem,

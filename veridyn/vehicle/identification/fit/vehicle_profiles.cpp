@@ -43,7 +43,7 @@ estimation::ProfileResult profile_drive(const VehicleProblem& problem, const Equ
   }
   const double factor = search_factor(problem, equation_error, output_error.raw);
   OutputErrorProblem given = output_error_problem(problem, equation_error, factor);
-  given.weigh(output_error.whitening);
+  given.begin_at(output_error.raw.theta);
   estimation::ProfileOptions options;
   options.output_error = given.options;
   // Statistics to about 1e-3: steps in a valley that gain less are not worth their simulations.

@@ -20,8 +20,8 @@ struct DrivePrior {
 /// unknown of every output error beside the vehicle's, with such a prior. What the drive says of it corrects the
 /// vehicle's parameters, what it leaves open is in their intervals. Those of roll count where the body rolls.
 inline constexpr std::array kDriveBudget{
-    DrivePrior{DriveUnknown::kSteerDelay, 0.03, "how late the recorded steering is answered",
-               "ours: CAN at 50 to 100 Hz, filters of column sensors and loggers make up to 30 ms"},
+    DrivePrior{DriveUnknown::kSteerDelay, 0.02, "how late the recorded steering is answered",
+               "ours: messages of a CAN bus at 50 to 100 Hz and filters of column sensors are 10 to 20 ms old each"},
     DrivePrior{DriveUnknown::kAccelYDelay, 0.01, "how late accel_y is recorded against yaw_rate",
                "ours: one sample at 100 Hz between two filters of one instrument"},
     DrivePrior{DriveUnknown::kAccelPlace, 0.3, "how far ahead of its given place the accelerometer is",

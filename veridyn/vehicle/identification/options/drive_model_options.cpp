@@ -303,8 +303,8 @@ estimation::ModelParameter model_parameter(DriveUnknown unknown, const DriveMode
   p.name = std::string(kDriveUnknownNames[unknown]);
   p.unit = std::string(kDriveUnknownUnits[unknown]);
   p.start = options.start[unknown];
-  p.prior_sigma = options.prior[unknown];
   p.fixed = !options.free[unknown];
+  p.prior_sigma = p.fixed ? kInfinity : options.prior[unknown];
   // Bounds must hold at the start, whatever was given.
   const auto [low, high] = bounds_of(unknown, p.start, wheelbase, options.search_factor);
   p.low = std::min(low, p.start);
@@ -329,6 +329,11 @@ DriveModelOptions with_structure(DriveModelOptions options, DriveStructure struc
     // Dry road and gravel: 0.6 to 1.2.
     if (!std::isfinite(options.prior[DriveUnknown::kMu])) options.prior[DriveUnknown::kMu] = 0.3;
   }
+  return options;
+}
+
+DriveModelOptions without_budget(DriveModelOptions options) {
+  for (const DrivePrior& budget : kDriveBudget) options.free[budget.unknown] = false;
   return options;
 }
 

@@ -79,6 +79,8 @@ inline constexpr double kLongestDelay_s = 0.5;
 inline constexpr double kBankSigma = 0.06;
 /// And of downforce [s^2/m^2]: racing cars gain as much force as they have at rest at 35 to 70 m/s, 2e-4 to 8e-4.
 inline constexpr double kDownforceSigma = 5e-4;
+/// The options with the unknowns of `kDriveBudget` at their starts.
+[[nodiscard]] DriveModelOptions without_budget(DriveModelOptions options);
 /// The options with these effects, whose unknowns are free, and no others.
 [[nodiscard]] DriveModelOptions with_effects(DriveModelOptions options, const DriveEffects& effects);
 

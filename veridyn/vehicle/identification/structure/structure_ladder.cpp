@@ -40,7 +40,7 @@ double log_prior_volume(const VehicleProblem& problem, const OutputErrorResult& 
 }
 
 /// Whether a fit ended where its structure is a simpler one. Where roll's frequency or damping end at their bounds in
-/// few steps the weighed fit may not; if it does, that is judged.
+/// few steps the fit to the end may not; if it does, that is judged.
 bool ends_at_simpler(DriveStructure structure, const OutputErrorResult& fit) {
   const std::array added{DriveUnknown::kRollGradient,
                          saturates(structure) ? DriveUnknown::kMu : DriveUnknown::kRelaxationLength};
@@ -115,11 +115,10 @@ class Climb {
 
   StructureLadder run() {
     if (problem_.options.structure) {
-      fit(*problem_.options.structure, true, problem_.options.effects.value_or(DriveEffects{}));
+      fit(*problem_.options.structure, true);
     } else {
       climb_to_roll();
-      if (takes_roll()) weigh();
-      if (takes_roll()) climb_beyond_roll(problem_.options.effects.value_or(DriveEffects{}));
+      if (takes_roll()) climb_beyond_roll(effects_given());
       if (!problem_.options.effects) add_effects();
       if (progress_.interrupted()) leave_out("not all structures were tried");
       doubt();
@@ -132,6 +131,7 @@ class Climb {
   [[nodiscard]] bool contradicts() const { return contradicts_; }
 
  private:
+  [[nodiscard]] DriveEffects effects_given() const { return problem_.options.effects.value_or(DriveEffects{}); }
   [[nodiscard]] VehicleProblem given(std::size_t rung) const { return with_options(problem_, options_[rung]); }
   [[nodiscard]] const TriedStructure& taken() const { return ladder_.tried[choose_structure(ladder_.tried)]; }
   [[nodiscard]] bool takes_roll() const {
@@ -139,9 +139,7 @@ class Climb {
   }
 
   /// Fits one more structure, from where the last one ended.
-  void fit(DriveStructure structure, bool relaxes) {
-    fit(structure, relaxes, problem_.options.effects.value_or(DriveEffects{}));
-  }
+  void fit(DriveStructure structure, bool relaxes) { fit(structure, relaxes, effects_given()); }
   void fit(DriveStructure structure, bool relaxes, const DriveEffects& effects) {
     progress_.stage(fmt::format("output error, structure: {}", name_of(structure, effects)));
     options_.push_back(with_structure(problem_.options, structure, relaxes, effects));
@@ -152,8 +150,8 @@ class Climb {
 
   /// The fit of a rung from where the search is, under the filter that there is.
   void fit_again(std::size_t rung) {
-    fits_[rung] = estimate_by_output_error(given(rung), equation_error_, search_start_, weighing_,
-                                           SearchEffort::kToCompare, progress_);
+    fits_[rung] =
+        estimate_by_output_error(given(rung), equation_error_, search_start_, SearchEffort::kToCompare, progress_);
     ladder_.tried[rung] = tried(given(rung), fits_[rung], progress_);
     if (fits_[rung].raw.usable()) search_start_ = fits_[rung].raw.theta;
   }
@@ -163,40 +161,35 @@ class Climb {
          {DriveStructure::kBicycle, DriveStructure::kScaledAccel, DriveStructure::kRoll}) {
       if (progress_.interrupted()) return;
       if (structure == DriveStructure::kScaledAccel && !problem_.signals[DriveSignal::kAccelY].available()) continue;
+      if (structure != DriveStructure::kBicycle) begin_with_known_sensors(structure, effects_given());
       fit(structure, false);
       if (contradicts() || is_exact(fits_.back())) return;
     }
   }
 
-  /// All so far again, under the filter of the roll's fit: likelihoods of coloured residuals take chance for structure.
-  /// Interrupted, it leaves the fits as they were: only those under one filter can be compared.
-  void weigh() {
-    const std::size_t roll = ladder_.tried.size() - 1;
-    weighing_ = output_error_problem(given(roll), equation_error_).model.whitening(fits_[roll].raw.theta);
-    if (weighing_.empty()) return;
-    progress_.stage("output error, all again with whitened residuals");
-    const std::vector<OutputErrorResult> fits = fits_;
-    const std::vector<TriedStructure> tried = ladder_.tried;
-    for (std::size_t rung = 0; rung <= roll && !progress_.interrupted(); ++rung) {
-      if (!fits_[rung].raw.usable()) continue;
-      search_start_ = fits_[rung].raw.theta;
-      fit_again(rung);
-    }
-    if (!progress_.interrupted()) return;
-    fits_ = fits;
-    ladder_.tried = tried;
+  /// The next search begins where the structure ends without the budget's unknowns: far from the minimum they take up
+  /// what the body does, and a search with them may stay there.
+  void begin_with_known_sensors(DriveStructure structure, const DriveEffects& effects) {
+    progress_.stage(fmt::format("output error, start of structure: {}", name_of(structure, effects)));
+    VehicleIdentifyOptions known = with_structure(problem_.options, structure, true, effects);
+    known.model = without_budget(known.model);
+    const OutputErrorResult first = estimate_by_output_error(with_options(problem_, known), equation_error_,
+                                                             known_start_, SearchEffort::kToCompare, progress_);
+    if (first.raw.usable()) known_start_ = first.raw.theta;
+    search_start_ = known_start_;
   }
 
   /// What tyres do beside rolling.
   void climb_beyond_roll(const DriveEffects& effects) {
     const std::size_t roll = ladder_.tried.size() - 1;
-    bool relaxes = false;
     for (const DriveStructure structure :
          {DriveStructure::kRelaxation, DriveStructure::kSaturation, DriveStructure::kMagicFormula}) {
       if (progress_.interrupted()) return;
-      search_start_ = fits_[relaxes ? roll + 1 : roll].raw.theta;
-      fit(structure, relaxes, effects);
-      relaxes = relaxes || taken().structure == DriveStructure::kRelaxation;
+      if (structure == DriveStructure::kRelaxation)
+        begin_with_known_sensors(structure, effects);
+      else
+        search_start_ = fits_[roll + 1].raw.theta;
+      fit(structure, true, effects);
     }
   }
 
@@ -278,7 +271,11 @@ class Climb {
     ladder_.fit = std::move(fits_[ladder_.chosen]);
     if (!progress_.interrupted()) {
       progress_.stage("output error");
-      ladder_.fit = refined(std::move(ladder_.fit), given(ladder_.chosen), equation_error_, progress_);
+      if (ladder_.fit.raw.usable()) {
+        OutputErrorResult to_the_end = estimate_by_output_error(
+            given(ladder_.chosen), equation_error_, ladder_.fit.raw.theta, SearchEffort::kToTheEnd, progress_);
+        if (to_the_end.raw.has_estimate() || !progress_.interrupted()) ladder_.fit = std::move(to_the_end);
+      }
     }
     if (progress_.interrupted()) {
       // A structure that was not tried may move the values by more than their intervals.
@@ -300,8 +297,7 @@ class Climb {
   StructureLadder ladder_;
   std::vector<OutputErrorResult> fits_;
   std::vector<VehicleIdentifyOptions> options_;
-  Eigen::VectorXd search_start_;
-  DriveWhitening weighing_;  // empty until roll is likelier
+  Eigen::VectorXd search_start_, known_start_;
 };
 
 std::string reason_of(const StructureLadder& ladder, bool contradicts) {

@@ -30,9 +30,8 @@ struct StructureLadder {
 
 /// Fits the structure that the study fixes, or all of them, each from where the one before it ended. Up to roll all are
 /// tried, however little the bicycle leaves: in a gentle drive a stiffness that is a tenth too low leaves no more than
-/// the sensors do. Where roll is likelier all are fitted again under the filter that whitens the roll's residual, and
-/// compared by that; if roll is taken still, so is what tyres do beside (relaxation, saturation). One that is not taken
-/// leaves a doubt, by its probability. A recording that contradicts itself (a failed row) says nothing of the
+/// the sensors do. Where roll is likelier what tyres do beside is tried too (relaxation, saturation). One that is not
+/// taken leaves a doubt, by its probability. A recording that contradicts itself (a failed row) says nothing of the
 /// structure: only the bicycle is fitted to it; nor is anything richer fitted to rounding errors. Interrupted, it takes
 /// the structure so of those whose fits had ended; of none, where the search of the first stood.
 [[nodiscard]] StructureLadder climb_structures(const VehicleProblem& problem,

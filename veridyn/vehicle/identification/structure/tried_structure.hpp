@@ -44,12 +44,13 @@ struct StructureDoubt {
 /// a bound, where it is the simpler one.
 [[nodiscard]] double probability_against(const TriedStructure& other, const TriedStructure& taken);
 
-/// A richer structure is taken where its probability against the one taken so far is larger than this.
+/// A richer structure is taken where its probability against the one taken so far is larger than this; tyres that lag
+/// beside roll, as all do, unless that of tyres that do not is: a lag left out passes for a delay of the steering.
 inline constexpr double kProbable = 0.95;
 /// And up to roll, which a plain bicycle must not be taken for, where it makes the data likelier by more than this (the
-/// log of the likelihoods' ratio, divided by `inflation`): twice it is a chi-square of the added unknowns, of which 20
-/// is exceeded by chance once in 2000 times (four unknowns).
-inline constexpr double kLikelier = 10.0;
+/// log of the likelihoods' ratio, divided by `inflation`): twice it is a chi-square of the added unknowns, of which 10
+/// is exceeded by chance once in 25 times (four unknowns).
+inline constexpr double kLikelier = 5.0;
 /// And predicts the hold-out no worse than by this, in the logarithm of all residuals together.
 inline constexpr double kNoWorse = 0.02;
 

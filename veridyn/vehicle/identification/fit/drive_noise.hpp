@@ -1,27 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
-#include <vector>
 
 namespace veridyn::vehicle {
-
-/// A linear filter that whitens the residual of a drive: of an output's residual e and the filter's state s
-///
-///     e_white = e - output s,     s_next = transition s + gain e_white     (transition before the correction)
-///
-/// The innovations of a steady Kalman filter about driving straight ahead, by speed, on the straight line between.
-struct DriveWhitening {
-  /// At one speed: states x states, states x outputs, outputs x states.
-  struct Filter {
-    Eigen::MatrixXd transition, gain, output;
-  };
-  std::vector<double> speed;  ///< [m/s], ascending; empty: no filter
-  std::vector<Filter> filter;
-  [[nodiscard]] bool empty() const { return speed.empty(); }
-  /// At a speed [m/s], without allocating where `out` has the sizes already.
-  void at(double u, Filter& out) const;
-};
 
 /// A drive about going straight ahead at one speed: x' = A x + B delta, y = C x + D delta.
 struct LinearDrive {
@@ -46,8 +27,5 @@ struct DriveNoise {
 /// `output_sigma`: of each output's own white noise.
 [[nodiscard]] DriveNoise drive_noise(const LinearDrive& drive, const SteeringNoise& steering,
                                      const Eigen::VectorXd& output_sigma);
-
-/// The steady Kalman predictor of such outputs.
-[[nodiscard]] DriveWhitening::Filter whitening_filter(const DriveNoise& noise);
 
 }  // namespace veridyn::vehicle

@@ -1,25 +1,11 @@
-#include "veridyn/vehicle/identification/fit/drive_whitening.hpp"
+#include "veridyn/vehicle/identification/fit/drive_noise.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/linear_algebra/matrix_exponential.hpp"
-#include "veridyn/numerics/linear_systems/riccati.hpp"
 
 namespace veridyn::vehicle {
-
-void DriveWhitening::at(double u, Filter& out) const {
-  const auto above = static_cast<std::size_t>(std::upper_bound(speed.begin(), speed.end(), u) - speed.begin());
-  const Filter& high = filter[std::min(above, speed.size() - 1)];
-  const Filter& low = filter[above > 0 ? above - 1 : 0];
-  const bool between = above > 0 && above < speed.size();
-  const double share = between ? (u - speed[above - 1]) / (speed[above] - speed[above - 1]) : 1.0;
-  out.transition = (1.0 - share) * low.transition + share * high.transition;
-  out.gain = (1.0 - share) * low.gain + share * high.gain;
-  out.output = (1.0 - share) * low.output + share * high.output;
-}
 
 DriveNoise drive_noise(const LinearDrive& drive, const SteeringNoise& steering, const Eigen::VectorXd& output_sigma) {
   constexpr Eigen::Index kNoise = 2;
@@ -42,13 +28,6 @@ DriveNoise drive_noise(const LinearDrive& drive, const SteeringNoise& steering, 
   out.C.col(states) = drive.D;
   out.R = output_sigma.cwiseAbs2().asDiagonal();
   return out;
-}
-
-DriveWhitening::Filter whitening_filter(const DriveNoise& noise) {
-  // The predictor's gain is the dual of a regulator's.
-  const auto regulator = numerics::discrete_linear_quadratic(noise.F.transpose(), noise.C.transpose(),
-                                                             noise.G * noise.G.transpose(), noise.R);
-  return {noise.F, regulator.K.transpose(), noise.C};
 }
 
 }  // namespace veridyn::vehicle
