@@ -9,6 +9,7 @@
 #include "veridyn/aircraft/identification/budget/sensor_priors.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/muscle/identification/emg_priors.hpp"
 #include "veridyn/vehicle/identification/options/drive_budget.hpp"
 
 namespace veridyn::app {
@@ -39,8 +40,16 @@ std::vector<Prior> of_aircraft() {
   return priors;
 }
 
-const std::pair<std::string, std::vector<Prior> (*)()> kPriorsOf[] = {{"aircraft", of_aircraft},
-                                                                      {"vehicle", of_vehicle}};
+std::vector<Prior> of_muscle() {
+  std::vector<Prior> priors;
+  for (const muscle::EmgPrior& p : muscle::kEmgBudget)
+    priors.push_back(
+        {fmt::format("emg.{}", p.key), p.sigma, std::string(p.unit), std::string(p.meaning), std::string(p.source)});
+  return priors;
+}
+
+const std::pair<std::string, std::vector<Prior> (*)()> kPriorsOf[] = {
+    {"aircraft", of_aircraft}, {"vehicle", of_vehicle}, {"muscle", of_muscle}};
 
 std::vector<Prior> priors_of(const std::string& kind) {
   std::vector<std::string> names;

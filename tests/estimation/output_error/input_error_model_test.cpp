@@ -92,23 +92,5 @@ TEST(InputErrorModel, GivesTheEstimateAndErrorBarOfGeneralisedLeastSquares) {
   EXPECT_GT(estimate.parameters[0].sigma, 3.0 * 0.05 / f.norm());
 }
 
-TEST(NoiseBesideInputErrors, FindsTheNoiseThatIsNotTheInputs) {
-  constexpr Eigen::Index n = 400;
-  RowMatrix H = RowMatrix::Zero(2 * n, 40);
-  for (Eigen::Index k = 0; k < n; ++k) H(2 * k, k / 10) = H(2 * k + 1, k / 10) = 1.0;
-  const RowMatrix c = normal_matrix(40, 1, 5), white = normal_matrix(2 * n, 1, 6);
-  const RowMatrix all = H * c;
-  RowMatrix residual(n, 2);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    residual(k, 0) = all(2 * k, 0) + 0.2 * white(2 * k, 0);
-    residual(k, 1) = all(2 * k + 1, 0) + 0.7 * white(2 * k + 1, 0);
-  }
-  residual(7, 1) = std::nan("");
-  const Eigen::VectorXd sigma = noise_beside_input_errors({residual}, {H}, Eigen::VectorXd::Ones(2));
-  // 400 values each: 3.5 % is one standard deviation of a standard deviation.
-  EXPECT_NEAR(sigma(0), 0.2, 0.02);
-  EXPECT_NEAR(sigma(1), 0.7, 0.07);
-}
-
 }  // namespace
 }  // namespace veridyn::estimation

@@ -102,6 +102,31 @@ INSTANTIATE_TEST_SUITE_P(PathsAndTendons, EmgDrivenArm,
                          ::testing::Combine(::testing::Values(PathSource::kExact, PathSource::kFitted),
                                             ::testing::Bool()));
 
+TEST(EmgDrivenModel, ErrorsOfTheEmgHaveTheDerivativesOfCentralDifferences) {
+  const MovedArm arm(load_model("arm").model(), PathSource::kFitted,
+                     {"brachialis.excitation_gain", "brachialis.excitation_delay"},
+                     {{MuscleOutputKind::kMoment, 1, 0.0}});
+  const EmgError error{.relative = 0.1, .absolute = 0.02};
+  const EmgDrivenModel driven = arm.along(10, 1e-8, error);
+  // About errors that are none of them zero.
+  Eigen::VectorXd theta(2 + driven.errors(0));
+  theta << arm.theta.head(2), Eigen::VectorXd::Constant(driven.errors(0), 0.4);
+  estimation::RowMatrix exact;
+  ASSERT_TRUE(driven.error_response(0, theta, exact));
+  ASSERT_EQ(exact.cols(), driven.errors(0));
+  estimation::ModelResponse plus, minus;
+  for (Eigen::Index j = 0; j < exact.cols(); j += 7) {
+    const double h = 0.05;
+    Eigen::VectorXd up = theta, down = theta;
+    up(2 + j) += h;
+    down(2 + j) -= h;
+    ASSERT_TRUE(driven.respond(0, up, {}, plus) && driven.respond(0, down, {}, minus));
+    const Eigen::VectorXd numeric = (plus.output - minus.output).reshaped() / (2.0 * h);
+    // The EMG is on lines between its samples, the shapes of its errors are not.
+    EXPECT_LE((numeric - exact.col(j)).cwiseAbs().maxCoeff(), 0.03 * exact.cwiseAbs().maxCoeff()) << "error " << j;
+  }
+}
+
 TEST(EmgDrivenModel, SaysWhichMuscleCannotBeSimulatedAndWhere) {
   const MovedArm arm(load_model("arm").model(), PathSource::kFitted, {"brachialis.optimal_fiber_length"});
   const EmgDrivenModel model = arm.along(10, 1e-6);

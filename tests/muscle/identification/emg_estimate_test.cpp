@@ -25,8 +25,13 @@ struct RecordedArm {
   }
   [[nodiscard]] Eigen::VectorXd hidden() const { return arm.theta.head(2); }
   [[nodiscard]] EmgEstimate estimated(const Eigen::VectorXd& noise, const EmgError& error) const {
+    return estimated(noise, error, measured);
+  }
+  [[nodiscard]] EmgEstimate estimated(const Eigen::VectorXd& noise, const EmgError& error,
+                                      const std::vector<estimation::RowMatrix>& moments) const {
     Progress progress;
-    return estimate_from_emg(model, model, measured, noise, error, {.starts = 1}, progress);
+    const EmgDrivenModel with_errors = arm.along(10, 1e-6, error);
+    return estimate_from_emg(with_errors, with_errors, moments, noise, {.starts = 1}, progress);
   }
   static constexpr double kMomentNoise = 0.05;
   test::MovedArm arm{load_model("arm").model(), PathSource::kFitted, kGains, {{MuscleOutputKind::kMoment, 1, 0.0}}};
@@ -70,6 +75,41 @@ TEST(EmgEstimate, IsLessSureWhereTheEmgHasAnError) {
   const EmgEstimate worse = r.estimated(kStated, {.relative = 0.2});
   EXPECT_GT(worse.estimate.best.parameters[0].sigma, 1.4 * noisy.estimate.best.parameters[0].sigma);
   EXPECT_GT(worse.input_share[0], noisy.input_share[0]);
+}
+
+// 1/2 sum (z - y(theta, c))^2/sigma^2 + 1/2 sum (c/f)^2
+TEST(EmgEstimate, FindsErrorsThatMakeTheRecordingLikelier) {
+  const RecordedArm& r = recorded_arm();
+  const EmgDrivenModel model = r.arm.along(10, 1e-6, {.relative = 0.1});
+  const EmgEstimate e = r.estimated(kStated, {.relative = 0.1});
+  ASSERT_TRUE(e.estimate.usable());
+  const Eigen::VectorXd found = e.about->errors()[0];
+  ASSERT_EQ(found.size(), model.errors(0));
+  const auto cost = [&](double share) {
+    Eigen::VectorXd theta(2 + found.size());
+    theta << e.estimate.best.theta, share * found;
+    estimation::ModelResponse response;
+    EXPECT_TRUE(model.respond(0, theta, {}, response));
+    double sum = (r.measured[0] - response.output).squaredNorm() / std::pow(RecordedArm::kMomentNoise, 2);
+    const std::vector<int> part = model.error_parts(0);
+    for (Eigen::Index i = 0; i < found.size(); ++i) sum += std::pow(share * found(i) / e.error_factors(part[at(i)]), 2);
+    return 0.5 * sum;
+  };
+  EXPECT_LT(cost(1.0), cost(0.0) - 3.0) << "than as it was recorded";
+  EXPECT_LT(cost(1.0), cost(1.5));
+}
+
+TEST(EmgEstimate, FindsHowLargeTheErrorsOfTheEmgAre) {
+  const RecordedArm& r = recorded_arm();
+  const EmgEstimate exact = r.estimated(kStated, {.relative = 0.1});
+  ASSERT_EQ(exact.error_factors.size(), kEmgErrorParts);
+  EXPECT_LT(exact.error_factors.maxCoeff(), 1.0) << "this EMG is exact";
+  // It is not where a moment is 30 % larger for a while.
+  std::vector<estimation::RowMatrix> wrong = r.measured;
+  wrong[0].middleRows(20, 25) *= 1.3;
+  const EmgEstimate more = r.estimated(kStated, {.relative = 0.01}, wrong);
+  ASSERT_TRUE(more.estimate.usable());
+  EXPECT_GT(more.error_factors.maxCoeff(), 1.1);
 }
 
 TEST(EmgEstimate, FindsTheNoiseThatIsNotStated) {

@@ -35,8 +35,13 @@ TaskOutcome outcome_of(double standard, double estimated, bool hold_out = false)
 class JudgedEmg : public ::testing::Test {
  protected:
   [[nodiscard]] std::vector<Evidence> rows(const std::vector<TaskOutcome>& tasks, const EmgError& error = {}) const {
-    return judge_emg(
-        {.model = model, .system = arm().system, .theta = theta, .tasks = tasks, .error = error, .outputs = outputs});
+    return judge_emg({.model = model,
+                      .system = arm().system,
+                      .theta = theta,
+                      .tasks = tasks,
+                      .error = error,
+                      .error_factors = factors,
+                      .outputs = outputs});
   }
   static const test::MovedArm& arm() {
     static const test::MovedArm moved(load_model("arm").model(), PathSource::kFitted, {"brachialis.excitation_gain"},
@@ -46,15 +51,17 @@ class JudgedEmg : public ::testing::Test {
   std::vector<MuscleOutput> outputs{{MuscleOutputKind::kMoment, 1, 0.0}};
   EmgDrivenModel model = arm().along(10, 1e-6);
   Eigen::VectorXd theta = Eigen::VectorXd::Constant(1, 1.0);
+  Eigen::VectorXd factors = Eigen::VectorXd::Constant(3, 0.6);
 };
 
 TEST_F(JudgedEmg, PassesWhereMomentsAndEmgBelongTogether) {
   const std::vector<Evidence> all = rows({outcome_of(2.0, 1.0)});
-  ASSERT_EQ(all.size(), 4U);
+  ASSERT_EQ(all.size(), 5U);
   for (const Evidence& row : all) EXPECT_EQ(row.outcome, Outcome::kPassed) << says(row);
   EXPECT_NEAR(all[0].value, 1.0, 1e-12) << "correlated";
   EXPECT_NEAR(all[1].value, 1.0, 1e-12) << "all is explained";
   EXPECT_NEAR(all[3].value, 0.1, 1e-12) << "as stated";
+  EXPECT_NEAR(all[4].value, 0.6 * std::sqrt(3.0), 1e-12) << "as found, of all parts";
 }
 
 TEST_F(JudgedEmg, FailsWhereTheMomentsHaveTheOtherSign) {
@@ -102,6 +109,17 @@ TEST_F(JudgedEmg, CautionsWhereExcitationsStandAtTheirLimit) {
   EXPECT_LT(row.value, 1.0);
   EXPECT_EQ(row.cause, estimation::Cause::kSaturation);
   EXPECT_THAT(says(row), HasSubstr("(brachialis in trial)"));
+}
+
+TEST_F(JudgedEmg, FailsWhereTheEmgWouldHaveToBeMuchMoreWrongThanStated) {
+  factors(2) = 1.7;
+  EXPECT_EQ(rows({outcome_of(1.0, 1.0)})[4].outcome, Outcome::kCare);
+  factors(2) = 2.6;
+  const Evidence row = rows({outcome_of(1.0, 1.0)})[4];
+  EXPECT_EQ(row.outcome, Outcome::kFailed);
+  EXPECT_EQ(row.cause, estimation::Cause::kMissingTerm);
+  EXPECT_TRUE(row.bears_on.contains(estimation::Purpose::kParameters));
+  EXPECT_THAT(says(row), HasSubstr("the model does not fit"));
 }
 
 TEST_F(JudgedEmg, CautionsWhereTheEmgIsTakenAsExact) {

@@ -78,7 +78,8 @@ struct MovedArm {
   }
 
   /// Along the angles of the forward simulation, sampled every `every` ms.
-  [[nodiscard]] EmgDrivenModel along(std::size_t every, double accuracy) const {
+  [[nodiscard]] EmgDrivenModel along(std::size_t every, double accuracy,
+                                     const EmgError& error = {.relative = 0.0}) const {
     Motion motion;
     motion.coordinate.resize(2);
     std::vector<double> t, q;
@@ -97,7 +98,7 @@ struct MovedArm {
     for (std::size_t m = 0; m < 6; ++m) segment.emg.push_back(column_of(smooth_excitations(6), m));
     std::vector<int> signal_of(6);
     std::iota(signal_of.begin(), signal_of.end(), 0);
-    return {system, unknowns, {segment}, outputs, signal_of, accuracy};
+    return {system, unknowns, {segment}, outputs, signal_of, accuracy, error};
   }
 
   MusculoskeletalSystem system;

@@ -96,8 +96,26 @@ TEST_F(EmgStudy, ReadsFilesWithTimesOfTheirOwn) {
   EXPECT_NEAR(r.time.front(), 10.1, 1e-9);         // after 0.1 s
   EXPECT_NEAR(r.time[1] - r.time[0], 0.01, 1e-9);  // 200 Hz are more than moments have in them
   EXPECT_NEAR(r.measured(0, 0), 4.0 + 3.0 * std::sin(4.0 * r.time[0]), 1e-9);
-  EXPECT_EQ(study.unknowns.size(), 6u);  // the gains
+  EXPECT_EQ(study.unknowns.size(), 7u);  // the gains and the delay
   EXPECT_FALSE(study.estimate_start);
+}
+
+TEST_F(EmgStudy, ADelayOfTheEmgIsAnUnknownUnlessTheStudySaysMore) {
+  const MuscleUnknown delay = read().unknowns.back();
+  EXPECT_EQ(delay.name, "EMG delay");
+  EXPECT_EQ(delay.parameters.size(), 6u) << "all muscles with EMG";
+  EXPECT_DOUBLE_EQ(delay.start, 0.04);
+  EXPECT_DOUBLE_EQ(delay.prior_sigma, 0.02);
+  EXPECT_LT(delay.low, 0.0) << "clocks that are right may give 0";
+  const MuscleUnknown told = read({}, "delay = \"25 ms\"\ndelay_sigma = \"5 ms\"\n" + kColumns).unknowns.back();
+  EXPECT_DOUBLE_EQ(told.start, 0.025);
+  EXPECT_DOUBLE_EQ(told.prior_sigma, 0.005);
+  const MuscleUnknown known = read({}, "delay = 0\ndelay_sigma = 0\n" + kColumns).unknowns.back();
+  EXPECT_TRUE(known.fixed);
+  EXPECT_EQ(known.start, 0.0);
+  const TaskStudy own = read("[[parameter]]\nname = \"late\"\nmuscles = [\"all\"]\nfields = [\"excitation_delay\"]\n");
+  ASSERT_EQ(own.unknowns.size(), 1u);
+  EXPECT_EQ(own.unknowns[0].name, "late");
 }
 
 TEST_F(EmgStudy, SubtractsTheModelsLimitForcesFromTheMoments) {

@@ -58,7 +58,7 @@ TEST(TaskRecordings, OfAPersonWithEmgAreOfItsOwnMotion) {
   const TaskRecordings all = task_recordings(study, progress);
   ASSERT_EQ(all.tasks.size(), 3u);
   EXPECT_TRUE(all.tasks[2].hold_out);
-  ASSERT_EQ(all.truth.size(), 3u);
+  ASSERT_EQ(all.truth.size(), 4u);
   for (const TaskRecording& task : all.tasks) {
     ASSERT_TRUE(task.along);
     EXPECT_EQ(task.along->emg.size(), 3u);
@@ -72,7 +72,7 @@ TEST(TaskRecordings, OfAPersonWithEmgAreOfItsOwnMotion) {
 TEST(EmgRecovery, FindsHiddenGainsAndPredictsUnseenMoments) {
   const MuscleAnalysis a =
       emg_recovered(1, kPair + kEmg + kGains + "[person]\nspread = \"30 %\"\n[identify]\nstarts = 1\n");
-  ASSERT_EQ(a.estimate.parameters.size(), 3u);
+  ASSERT_EQ(a.estimate.parameters.size(), 4u);
   std::size_t identified = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const estimation::Parameter& p = a.estimate.parameters[i];
@@ -93,17 +93,19 @@ TEST(EmgRecovery, FindsHiddenGainsAndPredictsUnseenMoments) {
 // One task and values known to 5 %: force is gain times strength but for the activation's dynamics, so that one goes up
 // as the other goes down.
 TEST(EmgRecovery, AGainAndTheStrengthOfItsMuscleAreHardlyTwoNumbers) {
+  // What is left open must not be the EMG's error, which is larger than these priors.
+  const std::string exact_enough = "[emg]\nnoise = \"3 %\"\ndelay_sigma = 0\n" + kEmg.substr(kEmg.find("low_pass"));
   const std::string flexors = "muscles = [\"biceps_long\", \"biceps_short\", \"brachialis\"]\n";
   const MuscleAnalysis a = emg_recovered(
       1,
-      "[tasks]\nnumbers = [8]\nload = 2\n" + kEmg + "[[parameter]]\nname = \"gain\"\n" + flexors +
+      "[tasks]\nnumbers = [8]\nload = 2\n" + exact_enough + "[[parameter]]\nname = \"gain\"\n" + flexors +
           "fields = [\"excitation_gain\"]\nbounds = \"20 %\"\nprior = \"5 %\"\n[[parameter]]\nname = \"strength\"\n" +
           flexors +
           "fields = [\"max_isometric_force\"]\nfactor = true\nbounds = \"20 %\"\nprior = \"5 %\"\n"
           "[person]\nspread = \"4 %\"\n[identify]\nstarts = 1\n");
   const Eigen::MatrixXd& P = a.result.best.covariance_white;
   EXPECT_LT(P(0, 1) / std::sqrt(P(0, 0) * P(1, 1)), -0.6);
-  for (const estimation::Parameter& p : a.result.best.parameters)
+  for (const estimation::Parameter& p : std::span(a.result.best.parameters).first(2))
     EXPECT_NE(p.status, estimation::ParameterStatus::kIdentified);
   ASSERT_FALSE(a.result.null_directions.empty());
   EXPECT_THAT(a.result.null_directions[0],

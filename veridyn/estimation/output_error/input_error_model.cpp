@@ -88,43 +88,4 @@ RowMatrix InputErrorModel::whitened(std::size_t segment, const RowMatrix& measur
   return values;
 }
 
-Eigen::VectorXd noise_beside_input_errors(const std::vector<RowMatrix>& residual,
-                                          const std::vector<RowMatrix>& response, Eigen::VectorXd sigma) {
-  constexpr int kMostRounds = 200;
-  constexpr double kEnough = 1e-4;
-  const Index outputs = sigma.size();
-  for (int round = 0; round < kMostRounds; ++round) {
-    Eigen::VectorXd sum = Eigen::VectorXd::Zero(outputs), count = sum;
-    for (std::size_t s = 0; s < residual.size(); ++s) {
-      const RowMatrix scaled = in_noise_units(response[s], sigma, residual[s]);
-      const numerics::SymmetricEigen eigen = numerics::symmetric_eigen(scaled.transpose() * scaled);
-      Eigen::VectorXd e(residual[s].size());
-      for (Index i = 0; i < e.size(); ++i) {
-        const double value = residual[s](i / outputs, i % outputs);
-        e(i) = std::isfinite(value) ? value / sigma(i % outputs) : 0.0;
-      }
-      // c given the residual: mean A^-1 H'e and covariance A^-1 with A = I + H'H.
-      const RowMatrix turned = scaled * eigen.vectors;
-      const Eigen::VectorXd inverse = (1.0 + eigen.values.array().max(0.0)).inverse();
-      const Eigen::VectorXd left = e - turned * inverse.cwiseProduct(turned.transpose() * e);
-      const Eigen::VectorXd spread = turned.cwiseAbs2() * inverse;
-      for (Index i = 0; i < e.size(); ++i) {
-        const Index j = i % outputs;
-        if (!std::isfinite(residual[s](i / outputs, j))) continue;
-        sum(j) += sigma(j) * sigma(j) * (left(i) * left(i) + spread(i));
-        count(j) += 1.0;
-      }
-    }
-    double moved = 0.0;
-    for (Index j = 0; j < outputs; ++j) {
-      if (!(count(j) > 0.0 && sum(j) > 0.0)) continue;
-      const double next = std::sqrt(sum(j) / count(j));
-      moved = std::max(moved, std::abs(next / sigma(j) - 1.0));
-      sigma(j) = next;
-    }
-    if (moved < kEnough) break;
-  }
-  return sigma;
-}
-
 }  // namespace veridyn::estimation

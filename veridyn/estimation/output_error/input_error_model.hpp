@@ -55,9 +55,4 @@ class InputErrorModel final : public ModelView {
   std::vector<ModelOutput> outputs_;
 };
 
-/// Standard deviations of the outputs' noise that make the residuals z - y of all segments most likely under R, with H
-/// as given: expectation maximisation over the errors c, from `start`.
-[[nodiscard]] Eigen::VectorXd noise_beside_input_errors(const std::vector<RowMatrix>& residual,
-                                                        const std::vector<RowMatrix>& response, Eigen::VectorXd start);
-
 }  // namespace veridyn::estimation

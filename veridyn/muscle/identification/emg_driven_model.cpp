@@ -16,12 +16,6 @@
 namespace veridyn::muscle {
 namespace {
 
-/// Standard deviation of the slow part of the EMG's error, of the quick one's, chosen for the coverage of simulated
-/// persons (docs/muscle.md, section 12): without it too few are inside. A likely reason, not shown: activation rises
-/// several times faster than it falls, so that quick errors leave slow ones behind, which derivatives at one course of
-/// the EMG do not show.
-constexpr double kSlowPart = 0.70710678118654752;
-
 /// A derivative of one muscle and the unknown that it belongs to.
 struct ChainedColumn {
   std::size_t to = 0;
@@ -101,13 +95,14 @@ EmgSegment along_motion(const MusculoskeletalSystem& system, const Motion& motio
 
 EmgDrivenModel::EmgDrivenModel(const MusculoskeletalSystem& system, std::vector<MuscleUnknown> unknowns,
                                std::vector<EmgSegment> segments, std::vector<MuscleOutput> outputs,
-                               std::vector<int> signal_of, double accuracy)
+                               std::vector<int> signal_of, double accuracy, const EmgError& error)
     : system_(&system),
       unknowns_(std::move(unknowns)),
       segments_(std::move(segments)),
       chosen_(std::move(outputs)),
       signal_of_(std::move(signal_of)),
-      accuracy_(accuracy) {
+      accuracy_(accuracy),
+      error_(error) {
   const Model& model = system.model();
   check_unknowns(model, unknowns_, model.name);
   for (const MuscleOutput& output : chosen_) {
@@ -123,6 +118,36 @@ EmgDrivenModel::EmgDrivenModel(const MusculoskeletalSystem& system, std::vector<
     least_.push_back({ControlSignals({system.muscles().settings(m).minimum_activation}), {}});
   }
   parameters_ = model_parameters(unknowns_);
+  double early = 0.0, late = 0.0;
+  for (const MuscleUnknown& u : unknowns_) {
+    const bool delay = std::ranges::any_of(
+        u.parameters, [](const MuscleParameterName& name) { return name.field == MuscleParameterName::kDelay; });
+    if (!delay) continue;
+    early = std::min(early, u.fixed ? u.start : u.low);
+    late = std::max(late, u.fixed ? u.start : u.high);
+  }
+  for (const EmgSegment& s : segments_) shapes_.push_back(error_shapes(error_, s.begin - late, s.time.back() - early));
+}
+
+Eigen::Index EmgDrivenModel::errors(std::size_t segment) const {
+  return signed_index(shapes_[segment].size() * segments_[segment].emg.size());
+}
+
+std::vector<int> EmgDrivenModel::error_parts(std::size_t segment) const {
+  std::vector<int> parts;
+  for (std::size_t i = 0; i < segments_[segment].emg.size(); ++i)
+    for (const EmgErrorShape& shape : shapes_[segment]) parts.push_back(shape.part);
+  return parts;
+}
+
+std::vector<MuscleControls> EmgDrivenModel::signals_at(std::size_t segment, const Eigen::VectorXd& theta) const {
+  std::vector<MuscleControls> signals = segments_[segment].emg;
+  if (theta.size() == signed_index(parameters_.size())) return signals;
+  const Eigen::Index each = signed_index(shapes_[segment].size());
+  for (std::size_t i = 0; i < signals.size(); ++i)
+    signals[i].excitation = without_errors(signals[i].excitation, error_, shapes_[segment],
+                                           theta.segment(signed_index(parameters_.size() + i * at(each)), each));
+  return signals;
 }
 
 bool EmgDrivenModel::acts(std::size_t segment, std::size_t muscle) const {
@@ -135,9 +160,10 @@ bool EmgDrivenModel::acts(std::size_t segment, std::size_t muscle) const {
   return false;
 }
 
-MuscleAlongPath EmgDrivenModel::along(std::size_t segment, std::size_t m, const MuscleValues& values) const {
+MuscleAlongPath EmgDrivenModel::along(std::size_t segment, std::size_t m, const MuscleValues& values,
+                                      const std::vector<MuscleControls>& signals) const {
   const EmgSegment& s = segments_[segment];
-  const MuscleControls& controls = signal_of_[m] >= 0 ? s.emg[signal_of_[m]] : least_[m];
+  const MuscleControls& controls = signal_of_[m] >= 0 ? signals[signal_of_[m]] : least_[m];
   return {alone_[m], s.length[m],       controls,       s.begin,        s.time,
           accuracy_, values.muscles[m], values.gain[m], values.delay[m]};
 }
@@ -147,7 +173,7 @@ std::string EmgDrivenModel::trouble(std::size_t segment, const Eigen::VectorXd& 
   if (!values.possible()) return "a muscle cannot have these parameters";
   PathMuscleResponse out;
   for (std::size_t m = 0; m < alone_.size(); ++m) {
-    if (acts(segment, m) && !simulate_along_path(along(segment, m, values), {}, out))
+    if (acts(segment, m) && !simulate_along_path(along(segment, m, values, segments_[segment].emg), {}, out))
       return fmt::format("{}: {}", system_->model().muscles[m].name(), out.trouble);
   }
   return {};
@@ -161,6 +187,7 @@ bool EmgDrivenModel::respond(std::size_t segment, const Eigen::VectorXd& theta, 
   response.sensitivity.setZero(samples(segment) * outputs, active.size());
   const MuscleValues values = values_at(system_->muscles(), unknowns_, theta);
   if (!values.possible()) return false;
+  const std::vector<MuscleControls> signals = signals_at(segment, theta);
   const MuscleShare share(s, chosen_, alone_.size());
   PathMuscleResponse out;
   for (std::size_t m = 0; m < alone_.size(); ++m) {
@@ -185,7 +212,7 @@ bool EmgDrivenModel::respond(std::size_t segment, const Eigen::VectorXd& theta, 
                            .field = name.field});
       }
     }
-    if (!simulate_along_path(along(segment, m, values), columns, out)) return false;
+    if (!simulate_along_path(along(segment, m, values, signals), columns, out)) return false;
     share.for_each(m, [&](std::size_t k, std::size_t row, double factor, bool of_force) {
       response.output.data()[row] += factor * (of_force ? out.force[k] : out.fiber_length[k]);
       auto to = response.sensitivity.row(row);
@@ -198,33 +225,28 @@ bool EmgDrivenModel::respond(std::size_t segment, const Eigen::VectorXd& theta, 
   return response.output.allFinite() && response.sensitivity.allFinite();
 }
 
-bool EmgDrivenModel::error_response(std::size_t segment, const Eigen::VectorXd& theta, const EmgError& error,
+bool EmgDrivenModel::error_response(std::size_t segment, const Eigen::VectorXd& theta,
                                     estimation::RowMatrix& response) const {
   const EmgSegment& s = segments_[segment];
   const MuscleValues values = values_at(system_->muscles(), unknowns_, theta);
   if (!values.possible()) return false;
-  const auto [early, late] = std::minmax_element(values.delay.begin(), values.delay.end());
-  // The quick part is the envelope's own spectrum.
   std::vector<PathMuscleColumn> columns;
-  for (const auto& [spacing, size] : {std::pair{error.spacing(), 1.0}, std::pair{2.0 * error.spacing(), kSlowPart}}) {
-    const auto first = static_cast<long>(std::floor((s.begin - *late) / spacing));
-    const auto last = static_cast<long>(std::ceil((s.time.back() - *early) / spacing));
-    for (long i = first; i <= last && error.any(); ++i)
-      columns.push_back({.kind = PathMuscleColumn::Kind::kError,
-                         .knot = static_cast<double>(i) * spacing,
-                         .spacing = spacing,
-                         .relative = size * error.relative,
-                         .absolute = size * error.absolute});
-  }
+  for (const EmgErrorShape& shape : shapes_[segment])
+    columns.push_back({.kind = PathMuscleColumn::Kind::kError,
+                       .knot = shape.knot,
+                       .spacing = shape.spacing,
+                       .relative = error_.relative,
+                       .absolute = error_.absolute});
   const Eigen::Index knots = signed_index(columns.size());
   const auto rows = samples(segment) * signed_index(chosen_.size());
   response.setZero(rows, knots * signed_index(s.emg.size()));
   if (knots == 0) return true;
+  const std::vector<MuscleControls> signals = signals_at(segment, theta);
   const MuscleShare share(s, chosen_, alone_.size());
   PathMuscleResponse out;
   for (std::size_t m = 0; m < alone_.size(); ++m) {
     if (signal_of_[m] < 0 || !acts(segment, m)) continue;
-    if (!simulate_along_path(along(segment, m, values), columns, out)) return false;
+    if (!simulate_along_path(along(segment, m, values, signals), columns, out)) return false;
     share.for_each(m, [&](std::size_t k, std::size_t row, double factor, bool of_force) {
       const estimation::RowMatrix& by = of_force ? out.force_by : out.fiber_by;
       response.row(row).segment(knots * signal_of_[m], knots) += factor * by.row(k);

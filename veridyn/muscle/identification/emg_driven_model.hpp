@@ -5,6 +5,7 @@
 
 #include "veridyn/core/index.hpp"
 #include "veridyn/estimation/output_error/parametric_model.hpp"
+#include "veridyn/muscle/identification/emg_error.hpp"
 #include "veridyn/muscle/identification/muscle_outputs.hpp"
 #include "veridyn/muscle/identification/muscle_unknowns.hpp"
 #include "veridyn/muscle/model/signals.hpp"
@@ -16,19 +17,6 @@ namespace veridyn::muscle {
 
 struct MuscleAlongPath;
 struct MuscleValues;
-
-/// How far recorded EMG envelopes are from the excitations that they stand for: an error of each signal that changes
-/// as fast as the envelope's bandwidth lets it, with standard deviation hypot(relative e, absolute).
-struct EmgError {
-  double relative = 0.1;
-  double absolute = 0.0;      ///< of full scale
-  double bandwidth_Hz = 6.0;  ///< of the envelope
-
-  [[nodiscard]] bool any() const { return relative > 0.0 || absolute > 0.0; }
-  /// Of the independent errors that make it up [s]: with the shapes of `PathMuscleColumn` its spectrum is 2 dB down at
-  /// the bandwidth, 10 dB at twice and nothing at three times that, as of a low-passed envelope.
-  [[nodiscard]] double spacing() const { return 0.25 / bandwidth_Hz; }
-};
 
 /// A recorded motion as `EmgDrivenModel` uses it: what of the muscles follows from the angles alone, and the EMG.
 struct EmgSegment {
@@ -51,7 +39,8 @@ struct EmgSegment {
 /// View of a system, which must outlive it: its muscles along recorded joint angles, driven by recorded EMG (Lloyd &
 /// Besier 2003, J Biomech 36:765). The skeleton is not integrated: paths are known functions of time, muscles are
 /// independent of each other, and a moment is the sum of their tensions times their arms. theta are unknowns of the
-/// muscles; segments have none of their own. Outputs are moments, fibre lengths and tendon forces.
+/// muscles, after which the errors of the segment's EMG may stand in standard deviations, signal by signal; without
+/// them the EMG is taken as it was recorded. Outputs are moments, fibre lengths and tendon forces.
 ///
 /// An EMG signal may drive several muscles, each with its own gain and delay: u(t) = gain e(t - delay), kept between
 /// the muscle's least activation and 1. Derivatives are those of `simulate_along_path`.
@@ -61,7 +50,7 @@ class EmgDrivenModel final : public estimation::ParametricModel {
   /// @throws InputError when unknowns contradict each other, or an output is a coordinate's value or speed.
   EmgDrivenModel(const MusculoskeletalSystem& system, std::vector<MuscleUnknown> unknowns,
                  std::vector<EmgSegment> segments, std::vector<MuscleOutput> outputs, std::vector<int> signal_of,
-                 double accuracy = 1e-6);
+                 double accuracy = 1e-6, const EmgError& error = {.relative = 0.0});
 
   [[nodiscard]] std::span<const estimation::ModelParameter> parameters() const override { return parameters_; }
   [[nodiscard]] std::span<const estimation::ModelOutput> outputs() const override { return outputs_; }
@@ -76,11 +65,14 @@ class EmgDrivenModel final : public estimation::ParametricModel {
   [[nodiscard]] bool respond(std::size_t segment, const Eigen::VectorXd& theta, std::span<const Eigen::Index> active,
                              estimation::ModelResponse& response) const override;
 
-  /// Derivatives of the outputs with respect to the errors of the signals, in standard deviations: rows as in
-  /// `ModelResponse::sensitivity`, columns signal by signal, `spacing` apart, and with half the variance twice as far:
-  /// activation's dynamics, whose rise is quicker than its fall, turn quick errors into slow ones beyond what
-  /// derivatives say. Muscles of one signal share its error. False as `respond`.
-  [[nodiscard]] bool error_response(std::size_t segment, const Eigen::VectorXd& theta, const EmgError& error,
+  /// Errors of a segment's EMG: those of one signal as `error_shapes` has them, over all delays within the bounds of
+  /// the unknowns, times signals.
+  [[nodiscard]] Eigen::Index errors(std::size_t segment) const;
+  /// By error of a segment the part that it belongs to.
+  [[nodiscard]] std::vector<int> error_parts(std::size_t segment) const;
+  /// Derivatives of the outputs with respect to the errors of the signals at `theta`, which has them: rows as in
+  /// `ModelResponse::sensitivity`. Muscles of one signal share its errors. False as `respond`.
+  [[nodiscard]] bool error_response(std::size_t segment, const Eigen::VectorXd& theta,
                                     estimation::RowMatrix& response) const;
   /// Why a segment cannot be simulated at `theta`: which muscle, at what time, its state. Empty where it can.
   [[nodiscard]] std::string trouble(std::size_t segment, const Eigen::VectorXd& theta) const;
@@ -89,8 +81,11 @@ class EmgDrivenModel final : public estimation::ParametricModel {
 
  private:
   [[nodiscard]] bool acts(std::size_t segment, std::size_t muscle) const;
-  /// The muscle as `values` has it along the segment; views both, and this.
-  [[nodiscard]] MuscleAlongPath along(std::size_t segment, std::size_t muscle, const MuscleValues& values) const;
+  /// Excitations by signal, with the errors at the end of `theta` taken out.
+  [[nodiscard]] std::vector<MuscleControls> signals_at(std::size_t segment, const Eigen::VectorXd& theta) const;
+  /// The muscle as `values` has it along the segment, driven by `signals`; views all three, and this.
+  [[nodiscard]] MuscleAlongPath along(std::size_t segment, std::size_t muscle, const MuscleValues& values,
+                                      const std::vector<MuscleControls>& signals) const;
 
   const MusculoskeletalSystem* system_;
   std::vector<MuscleUnknown> unknowns_;
@@ -98,8 +93,10 @@ class EmgDrivenModel final : public estimation::ParametricModel {
   std::vector<MuscleOutput> chosen_;
   std::vector<int> signal_of_;
   double accuracy_;
-  std::vector<MuscleGroup<double>> alone_;  ///< each muscle in a group by itself
-  std::vector<MuscleControls> least_;       ///< by muscle: its least activation
+  EmgError error_;
+  std::vector<std::vector<EmgErrorShape>> shapes_;  ///< by segment, of each signal
+  std::vector<MuscleGroup<double>> alone_;          ///< each muscle in a group by itself
+  std::vector<MuscleControls> least_;               ///< by muscle: its least activation
   std::vector<estimation::ModelParameter> parameters_;
   std::vector<estimation::ModelOutput> outputs_;
 };

@@ -110,13 +110,20 @@ Evidence check_error(const EmgFindings& f) {
   Evidence row = row_of(Check::kEmgError, "", passed_or(f.error.any(), Outcome::kCare));
   row.value = f.error.relative;
   if (!row.passed()) row.cause = Cause::kMissing;
-  return std::move(row).with("alike_s", 2.0 * f.error.spacing());
+  return std::move(row).with("alike_s", f.error.slow_s);
+}
+
+Evidence check_error_found(const EmgFindings& f) {
+  if (!f.error.any()) return row_of(Check::kEmgErrorFound, "", Outcome::kNotVerified);
+  Evidence row = row_of(Check::kEmgErrorFound, "", f.error_factors.norm());
+  if (!row.passed()) row.cause = Cause::kMissingTerm;
+  return row;
 }
 
 }  // namespace
 
 std::vector<Evidence> judge_emg(const EmgFindings& f) {
-  return {check_sign(f), check_explained(f), check_saturation(f), check_error(f)};
+  return {check_sign(f), check_explained(f), check_saturation(f), check_error(f), check_error_found(f)};
 }
 
 }  // namespace veridyn::muscle

@@ -266,8 +266,7 @@ RouteResult by_route(const TaskStudy& study, const SearchedTasks& searched, cons
   const TaskPart& part = *searched.part;
   RouteResult result;
   if (part.along) {
-    result.emg =
-        estimate_from_emg(*part.along, searched.logged, part.measured, noise, study.emg->error, study.search, progress);
+    result.emg = estimate_from_emg(*part.along, searched.logged, part.measured, noise, study.search, progress);
     result.estimate = result.emg.estimate;
   } else {
     result.estimate = estimate_from_tasks(searched.logged, part.measured, noise, study.search, progress);
@@ -295,8 +294,8 @@ estimation::PosteriorSample posterior_of(const TaskStudy& study, const SearchedT
   progress.stage(fmt::format("posterior of {} parameters", study.unknowns.size()));
   if (!study.emg)
     return sample_tasks(searched.shared, searched.part->measured, found.estimate, *study.posterior, progress, log);
-  return sample_tasks(found.emg.model->on(searched.shared), found.emg.measured, found.estimate, *study.posterior,
-                      progress, log);
+  const AboutEmgErrors about = found.emg.about->on(searched.shared);
+  return sample_tasks(found.emg.model->on(about), found.emg.measured, found.estimate, *study.posterior, progress, log);
 }
 
 /// Why no search came to an end, with the first task that cannot be simulated where the first search begins.
@@ -338,6 +337,7 @@ std::vector<estimation::Evidence> judged(const TaskStudy& study, const TaskPart&
                                    .theta = a.result.best.theta,
                                    .tasks = a.tasks,
                                    .error = study.emg->error,
+                                   .error_factors = a.emg_error_factors,
                                    .outputs = study.outputs}))
     rows.push_back(std::move(row));
   return rows;
@@ -377,6 +377,7 @@ MuscleAnalysis identify(const TaskStudy& study, Progress& progress, numerics::Va
   if (!a.result.usable()) throw std::runtime_error(why_diverged(study, trained, a.result));
   a.moment_noise = found.emg.noise;
   a.emg_share = found.emg.input_share;
+  a.emg_error_factors = found.emg.error_factors;
   const Eigen::VectorXd standard = start_values(study.unknowns), theta = a.result.best.theta;
   // Those of the whitened outputs are in no unit that a reader knows.
   const std::vector<RowMatrix> predicted = study.emg ? std::vector<RowMatrix>() : a.result.best.predicted;

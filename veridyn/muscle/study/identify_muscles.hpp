@@ -29,7 +29,8 @@ struct MuscleAnalysis : estimation::Analysis {
   // Of recordings with EMG:
   Eigen::VectorXd moment_noise = {};   ///< of the outputs, as stated or as found together with the EMG's error
   std::vector<double> emg_share = {};  ///< by trained task: share of the residual's variance that is the EMG's error
-  double preparing_s = 0.0;            ///< computed muscle control of the tasks
+  Eigen::VectorXd emg_error_factors = {};  ///< as `EmgEstimate`
+  double preparing_s = 0.0;                ///< computed muscle control of the tasks
   /// What the search asked of the trained tasks: misfit is the NRMSE of `task_error`.
   std::vector<estimation::ModelEvaluation> evaluations = {};
   std::size_t resumed = 0;  ///< simulations that were answered from the log of an earlier run

@@ -201,13 +201,18 @@ const KeyTable<EmgSettings>& EmgSettings::keys() {
   static const auto error =
       KeyTable<EmgError>("emg")
           .number("noise", &EmgError::relative, "1", internal::kBelowOne,
-                  "of the envelopes, standard deviation over their value; 0: they are exact")
+                  "of the envelopes, standard deviation over their value before the recording says more; 0: they are "
+                  "exact")
           .number("noise_floor", &EmgError::absolute, "1", internal::kBelowOne, "besides, over full scale")
           .number("bandwidth", &EmgError::bandwidth_Hz, "Hz", kPositive,
                   "of the envelopes: how fast their error changes");
   static const auto table =
       KeyTable<S>("emg", "Muscles along recorded angles, driven by EMG.")
           .with(&S::error, error)
+          .number("delay", &S::delay_s, "s", kAnyNumber,
+                  "of the muscles behind their EMG, where no `[[parameter]]` is a delay")
+          .number("delay_sigma", &S::delay_sigma_s, "s", kNotNegative,
+                  "standard deviation of what is known of it; 0: it is known")
           .number("low_pass", &S::low_pass_Hz, "Hz", kPositive, "of the angles, without delay")
           .otherwise("none")
           .number("settle", &S::settle_s, "s", kNotNegative, "of each recording that is not compared")

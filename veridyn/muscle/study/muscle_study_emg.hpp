@@ -18,6 +18,9 @@ struct EmgSettings {
   std::vector<int> signal_of;        ///< by muscle; -1: it rests at its least activation
   std::vector<double> maximum;       ///< by signal, in the files' unit: what stands for 1
   EmgError error;
+  /// How far all EMG is ahead of the excitations where no `[[parameter]]` is a delay: mean, standard deviation (0: it
+  /// is known).
+  double delay_s = kEmgDelay_s, delay_sigma_s = kEmgBudget[1].sigma;
   double low_pass_Hz = 0.0;  ///< of the angles; 0: none
   double settle_s = 0.1;     ///< not compared at the beginning, while activation and fibres forget how they began
 

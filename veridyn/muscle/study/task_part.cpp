@@ -35,7 +35,7 @@ TaskPart task_part(const TaskStudy& study, const TaskRecordings& all, bool hold_
   const MusculoskeletalSystem& system = *study.subject.system;
   if (study.emg)
     part.along = std::make_unique<EmgDrivenModel>(system, study.unknowns, std::move(along), study.outputs,
-                                                  study.emg->signal_of, study.accuracy);
+                                                  study.emg->signal_of, study.accuracy, study.emg->error);
   else
     part.forward =
         std::make_unique<MuscleParametricModel>(system, study.unknowns, std::move(forward), model_options(study));

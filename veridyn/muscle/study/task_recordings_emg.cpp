@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "veridyn/core/index.hpp"
 #include "veridyn/muscle/identification/muscle_values.hpp"
@@ -33,6 +34,29 @@ std::vector<double> envelope_noise(std::size_t count, const numerics::FirKernel&
   for (double& w : white) w = random.normal() / std::sqrt(kernel.noise_gain());
   const std::vector<double> smooth = numerics::filter(white, kernel);
   return {smooth.begin() + signed_index(margin), smooth.begin() + signed_index(margin + count)};
+}
+
+/// Noise that changes over a part of a second up to a second, with standard deviation 1: white noise under a Gaussian.
+std::vector<double> slow_noise(std::size_t count, numerics::RandomStream& random) {
+  const double correlation = kEmgRate_Hz * (0.3 + 0.7 * random.uniform());
+  const auto half = static_cast<long>(std::ceil(3.0 * correlation));
+  std::vector<double> kernel, noise(count, 0.0);
+  for (long i = -half; i <= half; ++i) kernel.push_back(std::exp(-std::pow(static_cast<double>(i) / correlation, 2)));
+  double squares = 0.0;
+  for (const double k : kernel) squares += k * k;
+  std::vector<double> white(count + kernel.size() - 1);
+  for (double& w : white) w = random.normal() / std::sqrt(squares);
+  for (std::size_t k = 0; k < count; ++k) noise[k] = std::inner_product(kernel.begin(), kernel.end(), &white[k], 0.0);
+  return noise;
+}
+
+/// An error of an envelope with standard deviation 1: in equal parts as quick as the envelope lets it, and slow.
+std::vector<double> envelope_error(std::size_t count, const numerics::FirKernel& kernel,
+                                   numerics::RandomStream& random) {
+  std::vector<double> error = envelope_noise(count, kernel, random);
+  const std::vector<double> slow = slow_noise(count, random);
+  for (std::size_t k = 0; k < count; ++k) error[k] = std::sqrt(0.5) * (error[k] + slow[k]);
+  return error;
 }
 
 /// What the EMG stands for, by signal: the controls that the person's own muscles need, in units of their gains and
@@ -85,8 +109,8 @@ std::vector<ControlSignals> recorded_envelopes(const TaskStudy& study, const std
   for (std::size_t s = 0; s < truth.size(); ++s) {
     numerics::RandomStream random(study.seed, fmt::format("EMG {} of {}", study.emg->signals[s], task));
     const std::span<const double> time = truth[s].times();
-    const std::vector<double> relative = envelope_noise(time.size(), kernel, random),
-                              absolute = envelope_noise(time.size(), kernel, random);
+    const std::vector<double> relative = envelope_error(time.size(), kernel, random),
+                              absolute = envelope_error(time.size(), kernel, random);
     std::vector<double> values;
     for (std::size_t k = 0; k < time.size(); ++k) {
       const double e = truth[s].row(k)[0];

@@ -51,13 +51,34 @@ std::vector<MuscleOutput> default_outputs(const MusculoskeletalSystem& system, b
   return outputs;
 }
 
-/// `[[parameter]]`, or the default ones within `identify.bounds`.
+/// How far the EMG of all muscles that have one is ahead of them, within three standard deviations.
+MuscleUnknown emg_delay(const Model& model, const EmgSettings& emg) {
+  MuscleUnknownSpec spec{.name = "EMG delay", .fields = {"excitation_delay"}, .start = emg.delay_s};
+  for (std::size_t m = 0; m < model.muscles.size(); ++m)
+    if (emg.signal_of[m] >= 0) spec.muscles.push_back(model.muscles[m].name());
+  spec.fixed = !(emg.delay_sigma_s > 0.0);
+  const double sigma = spec.fixed ? 1.0 : emg.delay_sigma_s;
+  spec.low = Extent{emg.delay_s - 3.0 * sigma};
+  spec.high = Extent{emg.delay_s + 3.0 * sigma};
+  spec.prior = Extent{sigma};
+  return make_unknown(model, spec, model.name);
+}
+
+bool is_delay(const MuscleUnknown& unknown) {
+  return std::ranges::all_of(unknown.parameters,
+                             [](const MuscleParameterName& name) { return name.field == MuscleParameterName::kDelay; });
+}
+
+/// `[[parameter]]`, or the default ones within `identify.bounds`; with EMG a delay in any case.
 std::vector<MuscleUnknown> unknowns_of(const StudyTable& root, double bounds, const Model& model,
                                        const std::optional<EmgSettings>& emg) {
   const StudyTable identify = root.table_or_empty("identify");
   std::vector<MuscleUnknown> unknowns = read_unknowns(root, model);
   if (emg && identify.has("bounds")) identify.fail("bounds", "is not for [emg]: write [[parameter]] with bounds");
-  if (unknowns.empty()) return default_unknowns(model, emg, 100.0 * bounds);
+  const bool chosen = !unknowns.empty();
+  if (!chosen) unknowns = default_unknowns(model, emg, 100.0 * bounds);
+  if (emg && std::ranges::none_of(unknowns, is_delay)) unknowns.push_back(emg_delay(model, *emg));
+  if (!chosen) return unknowns;
   if (identify.has("bounds")) identify.fail("bounds", "is for studies without [[parameter]], where each has its own");
   return unknowns;
 }
