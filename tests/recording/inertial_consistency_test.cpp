@@ -108,6 +108,17 @@ TEST(InertialConsistency, RecoversGainAndBiasThatWerePutIn) {
   EXPECT_NEAR(c.gyro->bias(2), 0.02, 4.0 * c.gyro->bias_sigma(2));
 }
 
+// Magnetic declination, or a compass that was not turned: in turns "axis x reads 0.35 y".
+TEST(InertialConsistency, AWrongNorthIsNoTurnedAccelerometer) {
+  Recording recording = swaying_body(3, kReference);
+  change(recording, "yaw", 1.0, 0.07);
+  const InertialConsistency c = inertial_consistency(recording, kWhole);
+  ASSERT_TRUE(c.accelerometer);
+  EXPECT_LT((c.accelerometer->gain - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff(), 0.02);
+  for (const estimation::Evidence& row : inertial_evidence(c))
+    if (row.about == "accelerometer") EXPECT_TRUE(row.passed()) << says(row);
+}
+
 TEST(InertialEvidence, RaisesNoAlarmOverTwoHundredCleanRecordings) {
   int alarms = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {

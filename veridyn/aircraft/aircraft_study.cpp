@@ -8,7 +8,9 @@
 
 #include "veridyn/aircraft/identification/evidence/contradicted_flight.hpp"
 #include "veridyn/aircraft/identification/evidence/recording_evidence.hpp"
+#include "veridyn/aircraft/identification/fit/accelerometer_place.hpp"
 #include "veridyn/aircraft/identification/fit/flight_delays.hpp"
+#include "veridyn/aircraft/identification/fit/gust_share.hpp"
 #include "veridyn/aircraft/identification/identified_estimate.hpp"
 #include "veridyn/aircraft/identification/parameter_groups.hpp"
 #include "veridyn/aircraft/identification/rows/flight_set.hpp"
@@ -139,7 +141,13 @@ PreparedFlight prepared(const FlightStudy& study, Progress& progress) {
   flight.recording_evidence = std::move(checked.rows);
   if (flight.usable()) {
     flight.budget.add(checked.errors);
+    for (std::string& note : lag_notes(flight.budget)) flight.signals.notes.push_back(std::move(note));
     flight.signals = without_errors(std::move(flight.signals), flight.budget.errors);
+    for (const auto& further : {accelerometer_place, air_errors}) {
+      const std::vector<SensorError> errors = further(flight, study.subject, study.known_sensors);
+      flight.budget.add(errors);
+      flight.signals = without_errors(std::move(flight.signals), errors);
+    }
   }
   return flight;
 }

@@ -161,6 +161,9 @@ void Calibration::add(const Identified& flight) {
       const auto truth = flight.analysis.truth.find(p.name);
       if (truth == flight.analysis.truth.end()) continue;
       const bool held = all_.add(p, truth->second);
+      lines_.push_back(fmt::format("{},{},{},{:.5g},{:.3g},{:.5g},{}", flights_ + lost_, p.name,
+                                   estimation::to_string(p.status), p.value, 0.5 * (p.high95 - p.low95), truth->second,
+                                   held ? 1 : 0));
       classes_[class_of(p.name)].add(held);
       of_flights_.back().add(held);
       if (data_yes && group.judgement.parameters.grade == estimation::Grade::kYes) graded_yes_.add(held);

@@ -67,6 +67,8 @@ class Calibration {
   /// "| name | flights | ... |", with the heading that belongs to it.
   [[nodiscard]] std::string row(std::string_view name) const;
   [[nodiscard]] static std::string heading();
+  /// A line for each interval: flight, parameter, status, value, half width, truth, whether it holds.
+  [[nodiscard]] const std::vector<std::string>& lines() const { return lines_; }
 
  private:
   struct Count {
@@ -77,7 +79,7 @@ class Calibration {
     }
   };
   std::size_t flights_ = 0, lost_ = 0, data_yes_ = 0;
-  std::vector<std::string> refusals_;
+  std::vector<std::string> refusals_, lines_;
   std::map<std::string, Count> classes_;
   Count graded_yes_;  ///< data and the group's parameters
   std::vector<Count> of_flights_;

@@ -50,13 +50,20 @@ std::vector<Stripped> steps() {
 Identified flown_without(FlightStudy study, const Stripped& stripped) {
   study.mapped.recording = testing::without(study.mapped.recording, stripped.channels);
   study.reconstruct.filter = stripped.filter;
+  // Said of accelerometer and air, which are simulated without: their own unknowns are not what is counted here.
+  using enum SensorErrorKind;
+  for (const SensorErrorKind kind : {kZeroX, kZeroY, kZeroZ, kPlaceX, kPlaceY, kPlaceZ})
+    study.known_sensors.errors.push_back({BudgetSensor::kAccelerometer, kind, 0.0, 0.0});
+  for (const SensorErrorKind kind : {kGustTurn, kDownwash})
+    study.known_sensors.errors.push_back({BudgetSensor::kAir, kind, 0.0, 0.0});
   return testing::identified(study);
 }
 
 /// Of flights without the same sensors: what was identified, and how it agrees with the truth.
 struct Tally {
   std::size_t flights = 0, identified = 0, covered = 0, effective = 0, rejected = 0, graded_yes = 0, wrong = 0;
-  std::string which;  ///< parameters that are graded yes and wrong
+  std::string which;    ///< parameters that are graded yes and wrong
+  std::string outside;  ///< all whose interval does not hold the truth
 
   void add(const Identified& flight) {
     ++flights;
@@ -70,7 +77,10 @@ struct Tally {
             p.status == estimation::ParameterStatus::kIdentified || p.status == estimation::ParameterStatus::kWeak;
         if (!stated || truth == flight.analysis.truth.end()) continue;
         ++identified;
-        covered += p.low95 <= truth->second && truth->second <= p.high95 ? 1 : 0;
+        const bool holds = p.low95 <= truth->second && truth->second <= p.high95;
+        covered += holds ? 1 : 0;
+        if (!holds)
+          outside += fmt::format("{} {:.3g} +- {:.2g} ({:.3g}); ", p.name, p.value, p.high95 - p.value, truth->second);
       }
     }
     graded_yes += flight.confidence.confident;
@@ -137,7 +147,7 @@ TEST(MissingSensorsCampaign, CostWhatDependsOnThem) {
                            "ground velocity, attitude, heading", "nothing, no filter"}) {
     const Tally& tally = of_step(sums, name);
     EXPECT_GE(5 * tally.identified, 4 * all) << name;
-    EXPECT_GE(tally.coverage(), 0.9) << name;
+    EXPECT_GE(tally.coverage(), 0.9) << name << ": " << tally.outside;
     EXPECT_LE(tally.wrong, 1U) << name << ": " << tally.which;
   }
   for (const char* name : {"pitot tube", "vanes", "pitot tube, vanes", "vanes, ground velocity, heading"}) {
@@ -147,7 +157,7 @@ TEST(MissingSensorsCampaign, CostWhatDependsOnThem) {
   }
   const Tally& beta = of_step(sums, "beta vane");
   EXPECT_GE(beta.identified, 20U) << "CL, CD and Cm rest on the alpha vane";
-  EXPECT_GE(beta.coverage(), 0.9);
+  EXPECT_GE(beta.coverage(), 0.9) << beta.outside;
 }
 
 using estimation::Check;

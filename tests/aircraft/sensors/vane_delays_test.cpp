@@ -136,8 +136,10 @@ TEST(VaneDelays, CoverTheTruthInAnyAir) {
 // 60 ms made CL_alpha 11 % and Cm_alpha 10 % too small, and both were graded yes.
 TEST(VaneDelays, LeaveTheDerivativesRightInCalmAir) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
-    const testing::Identified flight =
-        testing::identified(with_late_vanes(campaign_flight("unatrap", seed, 300.0, "none"), 0.06, 0.0));
+    FlightStudy study = with_late_vanes(campaign_flight("unatrap", seed, 300.0, "none"), 0.06, 0.0);
+    // A downwash that comes late would be one more delay of alpha: this aircraft has none.
+    study.known_sensors.errors.push_back({BudgetSensor::kAir, SensorErrorKind::kDownwash, 0.0, 0.0});
+    const testing::Identified flight = testing::identified(study);
     ASSERT_FALSE(flight.refused) << flight.message;
     int seen = 0;
     for (const auto& p : flight.analysis.estimate.parameters) {

@@ -63,8 +63,8 @@ using SensorSet = std::vector<SensorSettings>;
 [[nodiscard]] SensorSet reference_sensors();
 
 /// Tables of `[sensors]` that say what is known of the sensor of a recorded channel; simulations do not read them.
-inline constexpr std::array<std::string_view, 8> kRecordedSensorNames{
-    "airspeed", "alpha", "beta", "elevator", "aileron", "rudder", "specific_force", "air_density"};
+inline constexpr std::array<std::string_view, 9> kRecordedSensorNames{
+    "airspeed", "alpha", "beta", "elevator", "aileron", "rudder", "specific_force", "air_density", "air"};
 
 /// Study table `[sensors]`, over the reference set, with a table for each sensor that differs.
 [[nodiscard]] const KeyTable<SensorSet>& sensor_keys();

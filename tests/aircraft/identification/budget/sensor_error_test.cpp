@@ -49,6 +49,39 @@ TEST(SensorError, AScaleOfTheAirspeedTakesItsThrustAlong) {
                    1.212);
 }
 
+// A recorded command is ahead of its surface: x + T x' of a sine, T = 50 ms at 1 Hz.
+TEST(SensorError, ALagIsTakenOffACommandAndNoneOfItsJumpsIsLeft) {
+  constexpr double kLag = 0.05;
+  FlightSignals command = signals();
+  for (std::size_t k = 0; k < command.grid.count; ++k)
+    command[FlightSignal::kElevator].value.push_back(0.1 * std::sin(kFullTurn * command.grid.at(k)));
+  command.jumps = {{FlightSignal::kElevator, 100}, {FlightSignal::kRudder, 100}};
+  const FlightSignals surface = without_errors(command, {{BudgetSensor::kElevator, SensorErrorKind::kLag, kLag, 0.0}});
+  const double turn = kFullTurn * kLag, gain = 1.0 / std::hypot(1.0, turn);
+  for (std::size_t k = 60; k < 200; ++k)
+    EXPECT_NEAR(surface[FlightSignal::kElevator].value[k],
+                0.1 * gain * std::sin(kFullTurn * command.grid.at(k) - std::atan(turn)), 5e-5);
+  ASSERT_EQ(surface.jumps.size(), 1U);
+  EXPECT_EQ(surface.jumps.front().control, FlightSignal::kRudder);
+  const FlightSignals back = with_error(surface, BudgetSensor::kElevator, SensorErrorKind::kLag, kLag);
+  EXPECT_NEAR(back[FlightSignal::kElevator].value[130], command[FlightSignal::kElevator].value[130], 2e-4);
+}
+
+TEST(SensorError, APlaceOfTheAccelerometerAddsTheAccelerationOfItsArm) {
+  FlightSignals turning = signals();
+  const std::vector<double> none(turning.grid.count, 0.0);
+  for (const FlightSignal s : {FlightSignal::kAx, FlightSignal::kAy, FlightSignal::kAz, FlightSignal::kP,
+                               FlightSignal::kR, FlightSignal::kPdot, FlightSignal::kRdot})
+    turning[s].value = none;
+  turning[FlightSignal::kQ].value.assign(turning.grid.count, 2.0);
+  turning[FlightSignal::kQdot].value.assign(turning.grid.count, 3.0);
+  const FlightSignals ahead = with_error(turning, BudgetSensor::kAccelerometer, SensorErrorKind::kPlaceX, 0.1);
+  EXPECT_NEAR(ahead[FlightSignal::kAx].value[5], -0.4, 1e-12);  // to the centre, q^2 x
+  EXPECT_NEAR(ahead[FlightSignal::kAz].value[5], -0.3, 1e-12);  // up with q', -q' x
+  EXPECT_EQ(with_error(turning, BudgetSensor::kAccelerometer, SensorErrorKind::kZeroY, 0.2)[FlightSignal::kAy].value[5],
+            0.2);
+}
+
 TEST(SensorError, WhatTheFlightHasNotIsLeftAlone) {
   const FlightSignals same = with_error(signals(), BudgetSensor::kBeta, SensorErrorKind::kZero, 1.0);
   EXPECT_FALSE(same[FlightSignal::kBeta].available());

@@ -1,5 +1,6 @@
 #include "veridyn/aircraft/identification/fit/flight_delays.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -72,6 +73,44 @@ TEST(FlightDelays, WhatTheStudyGivesIsKnownAndWhatItKnowsRoughlyIsNot) {
   EXPECT_NEAR(sigma_of_beta(study), 0.0005, 1e-4);
   study.delays.automatic = false;
   EXPECT_EQ(sigma_of_beta(study), 0.0);
+}
+
+/// With servos of 50 ms and 4 rad/s, or with none that takes time; their commands are logged.
+FlightStudy commanded_flight(bool servos) {
+  std::string text = "seed = 3\n[subject]\nbuiltin = \"unatrap\"\n";
+  for (const char* surface : {"elevator", "aileron", "rudder"})
+    text += fmt::format("[subject.actuators.{}]\n{}\n", surface,
+                        servos ? "time_constant = 0.05\nrate_limit = 4.0" : "time_constant = 0\nrate_limit = 1000");
+  Progress silent;
+  return read_study(
+      Study::parse(text + "[flight]\nduration = 120\naltitude = 300\nlog_commands = true\n", "servos.toml"), silent);
+}
+
+const SensorError* lag_of(const Identified& flight, BudgetSensor surface) {
+  const std::vector<SensorError>& errors = flight.analysis.flights.front().budget.errors;
+  const auto found = std::ranges::find_if(
+      errors, [&](const SensorError& e) { return e.sensor == surface && e.kind == SensorErrorKind::kLag; });
+  return found == errors.end() ? nullptr : &*found;
+}
+
+// Every autopilot logs commands. A first-order lag is no delay: Cm_alpha came out -0.46 +- 0.02 in place of -0.85.
+TEST(FlightDelays, ALagOfCommandedSurfacesIsFoundAndInTheIntervals) {
+  const Identified flight = aircraft::testing::identified(commanded_flight(true));
+  for (const BudgetSensor surface : {BudgetSensor::kElevator, BudgetSensor::kAileron, BudgetSensor::kRudder}) {
+    const SensorError* lag = lag_of(flight, surface);
+    ASSERT_NE(lag, nullptr);
+    EXPECT_GT(lag->mean, 0.01);
+    EXPECT_NEAR(lag->mean, 0.05, 3.0 * lag->sigma);
+  }
+  for (const CoefficientResult& result : flight.analysis.coefficients) {
+    if (result.coefficient != Coefficient::kCm) continue;
+    for (const estimation::Parameter& p : result.chosen->parameters) {
+      EXPECT_NEAR(p.value, flight.analysis.truth.at(p.name), p.high95 - p.value) << p.name;
+      if (p.name == "Cm_alpha") EXPECT_LT(p.high95 - p.value, 0.5 * std::abs(p.value));
+    }
+  }
+  // A surface that is where it is commanded to be jumps with the command: it has none.
+  EXPECT_EQ(lag_of(aircraft::testing::identified(commanded_flight(false)), BudgetSensor::kElevator), nullptr);
 }
 
 /// Of a parameter of a flight.

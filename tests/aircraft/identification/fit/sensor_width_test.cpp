@@ -78,13 +78,15 @@ TEST(IntervalParts, AreTheRootsOfVariancesThatAddUp) {
   Eigen::MatrixXd sensors = Eigen::MatrixXd::Zero(1, kSensorErrors);
   sensors(0, column_of(BudgetSensor::kAlpha, SensorErrorKind::kScale)) = 3.0;
   sensors(0, column_of(BudgetSensor::kAirspeed, SensorErrorKind::kScale)) = 4.0;
-  sensors(0, column_of(BudgetSensor::kAlpha, SensorErrorKind::kDelay)) = 2.0;
+  sensors(0, column_of(BudgetSensor::kAlpha, SensorErrorKind::kDelay)) = 1.2;
+  sensors(0, column_of(BudgetSensor::kElevator, SensorErrorKind::kLag)) = 1.6;
+  sensors(0, column_of(BudgetSensor::kAccelerometer, SensorErrorKind::kPlaceX)) = std::sqrt(5.0);
   const IntervalParts parts =
       interval_parts(Eigen::VectorXd::Constant(1, 0.5), sensors, Eigen::MatrixXd::Constant(1, 4, 1.0));
   EXPECT_DOUBLE_EQ(parts.noise(0), 0.5);
   EXPECT_DOUBLE_EQ(parts.air_data(0), 5.0);
   EXPECT_DOUBLE_EQ(parts.delays(0), 2.0);
-  EXPECT_DOUBLE_EQ(parts.body(0), 2.0);
+  EXPECT_DOUBLE_EQ(parts.body(0), 3.0);
 }
 
 TEST(SensorShareRow, NamesTheIntervalsThatAreMostlyThoseOfSensors) {

@@ -1,10 +1,13 @@
 #include "veridyn/aircraft/identification/budget/sensor_error.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <span>
 
+#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/linear_algebra/products.hpp"
 #include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
 
@@ -33,6 +36,41 @@ std::vector<double> later(const std::vector<double>& x, double steps) {
   return moved;
 }
 
+/// What a first-order lag is taken off of, `time_constant` > 0: x + time_constant x'. By a negative one x follows with
+/// that lag, exactly where it is linear between grid points. After a hole it starts anew.
+std::vector<double> before_lag(const std::vector<double>& x, double time_constant, double step) {
+  std::vector<double> y = x;
+  if (time_constant > 0.0) {
+    for (std::size_t k = 1; k + 1 < x.size(); ++k) y[k] += time_constant * (x[k + 1] - x[k - 1]) / (2.0 * step);
+    return y;
+  }
+  if (time_constant == 0.0) return y;
+  const double ratio = step / -time_constant, kept = std::exp(-ratio), mean = -std::expm1(-ratio) / ratio;
+  for (std::size_t k = 1; k < x.size(); ++k) {
+    if (!std::isfinite(x[k]) || !std::isfinite(y[k - 1])) continue;
+    y[k] = kept * y[k - 1] + (mean - kept) * x[k - 1] + (1.0 - mean) * x[k];
+  }
+  return y;
+}
+
+void place_accelerometer(FlightSignals& signals, const Eigen::Vector3d& r) {
+  if (!signals[F::kAx].available() || !signals[F::kAy].available() || !signals[F::kAz].available()) return;
+  for (std::size_t k = 0; k < signals.grid.count; ++k) {
+    const Eigen::Vector3d w(signals[F::kP].value[k], signals[F::kQ].value[k], signals[F::kR].value[k]);
+    const Eigen::Vector3d dw(signals[F::kPdot].value[k], signals[F::kQdot].value[k], signals[F::kRdot].value[k]);
+    const Eigen::Vector3d lever = dw.cross(r) + w.cross(w.cross(r));
+    signals[F::kAx].value[k] += lever.x();
+    signals[F::kAy].value[k] += lever.y();
+    signals[F::kAz].value[k] += lever.z();
+  }
+}
+
+/// Of an error of one of the accelerometer's axes; none of other errors.
+std::optional<Eigen::Index> axis_of_error(SensorErrorKind kind, SensorErrorKind first) {
+  const auto axis = static_cast<Eigen::Index>(kind) - static_cast<Eigen::Index>(first);
+  return axis >= 0 && axis < 3 ? std::optional(axis) : std::nullopt;
+}
+
 }  // namespace
 
 std::span<const F> signals_of(BudgetSensor sensor) {
@@ -42,6 +80,7 @@ std::span<const F> signals_of(BudgetSensor sensor) {
     case BudgetSensor::kAccelerometer:
       return kForce;
     case BudgetSensor::kAirDensity:
+    case BudgetSensor::kAir:
       return {};
     default:
       return std::span(kOne).subspan(static_cast<std::size_t>(sensor), 1);
@@ -93,8 +132,22 @@ bool rests_on(Coefficient coefficient, BudgetSensor sensor) {
 }
 
 FlightSignals with_error(FlightSignals signals, BudgetSensor sensor, SensorErrorKind kind, double size) {
+  if (sensor == BudgetSensor::kAir) {
+    AirRates& air = signals.air_rates;
+    // The share in the regressors is what is thought to be there: an error more is so much less of it.
+    (kind == SensorErrorKind::kGustTurn ? air.turn_share : air.downwash_share) -= size;
+    return signals;
+  }
   if (sensor == BudgetSensor::kAirDensity) {
     for (double& rho : signals.air_density) rho *= 1.0 + size;
+    return signals;
+  }
+  if (const auto axis = axis_of_error(kind, SensorErrorKind::kPlaceX)) {
+    place_accelerometer(signals, size * Eigen::Vector3d::Unit(*axis));
+    return signals;
+  }
+  if (const auto axis = axis_of_error(kind, SensorErrorKind::kZeroX)) {
+    for (double& v : signals[signals_of(sensor)[at(*axis)]].value) v += size;
     return signals;
   }
   for (const F which : signals_of(sensor)) {
@@ -103,6 +156,9 @@ FlightSignals with_error(FlightSignals signals, BudgetSensor sensor, SensorError
     const std::vector<double> before = value;
     if (kind == SensorErrorKind::kDelay) {
       value = later(before, size / signals.grid.step);
+    } else if (kind == SensorErrorKind::kLag) {
+      value = before_lag(before, size, signals.grid.step);
+      std::erase_if(signals.jumps, [which](const DeflectionJump& jump) { return jump.control == which; });
     } else {
       for (double& v : value) v = kind == SensorErrorKind::kScale ? v * (1.0 + size) : v + size;
     }

@@ -15,22 +15,39 @@
 /// off the signals before the regression, and its covariance widens the intervals of the parameters.
 namespace veridyn::aircraft {
 
-/// Whose error it is.
-enum class BudgetSensor { kAirspeed, kAlpha, kBeta, kElevator, kAileron, kRudder, kAccelerometer, kAirDensity };
-inline constexpr std::size_t kBudgetSensors = 8;  ///< values of BudgetSensor
+/// Whose error it is. That of the air: it does more than to move as a whole.
+enum class BudgetSensor { kAirspeed, kAlpha, kBeta, kElevator, kAileron, kRudder, kAccelerometer, kAirDensity, kAir };
+inline constexpr std::size_t kBudgetSensors = 9;  ///< values of BudgetSensor
 /// As in studies, `[sensors.alpha]`.
 inline constexpr EnumArray<BudgetSensor, std::string_view, kBudgetSensors> kBudgetSensorNames{kRecordedSensorNames};
 
 enum class SensorErrorKind {
   kScale,  ///< of reading over truth, less 1
   kZero,   ///< of the reading, in the signal's unit
-  kDelay   ///< from event to stamp, against the gyro [s]
+  kDelay,  ///< from event to stamp, against the gyro [s]
+  kLag,    ///< of a surface behind a first-order lag of what is recorded of it [s]
+  kZeroX,  ///< of one axis of the accelerometer [m/s^2]
+  kZeroY,
+  kZeroZ,
+  kPlaceX,  ///< of the accelerometer, from where it is taken to be, along a body axis [m]
+  kPlaceY,
+  kPlaceZ,
+  kGustTurn,  ///< of the rates q_g and r_g that gusts give the air along the aircraft, share of MIL-F-8785C's
+  kDownwash   ///< of the parameters by q: the part that is the downwash's, which comes late
 };
+inline constexpr std::size_t kSensorErrorKinds = 12;  ///< values of SensorErrorKind
 /// As in studies.
-inline constexpr EnumArray<SensorErrorKind, std::string_view, 3> kSensorErrorKindNames{{"scale", "zero", "delay"}};
+inline constexpr EnumArray<SensorErrorKind, std::string_view, kSensorErrorKinds> kSensorErrorKindNames{
+    {"scale", "zero", "delay", "lag", "zero_x", "zero_y", "zero_z", "place_x", "place_y", "place_z", "gust_turn",
+     "downwash"}};
 /// What it is, in words.
-inline constexpr EnumArray<SensorErrorKind, std::string_view, 3> kSensorErrorKindMeanings{
-    {"reading over truth", "reading less truth; of the airspeed in its pressure", "from event to time stamp"}};
+inline constexpr EnumArray<SensorErrorKind, std::string_view, kSensorErrorKinds> kSensorErrorKindMeanings{
+    {"reading over truth", "reading less truth; of the airspeed in its pressure", "from event to time stamp",
+     "time constant with which the surface follows what is recorded; 0 where its position is",
+     "reading less truth along the body's x", "likewise along y", "likewise along z",
+     "where it is, less where `imu_position` says, along the body's x", "likewise along y", "likewise along z",
+     "share of the q_g and r_g that MIL-F-8785C gives gusts along the aircraft",
+     "part of the parameters by q that is the downwash's and comes late"}};
 
 /// The signals that a sensor measures; none of the air density, which is no `FlightSignal`.
 [[nodiscard]] std::span<const FlightSignal> signals_of(BudgetSensor sensor);
@@ -55,9 +72,9 @@ struct SensorBudget {
 };
 
 /// Each kind of error of each sensor has a place among all: columns of sensitivities.
-inline constexpr std::size_t kSensorErrors = 3 * kBudgetSensors;
+inline constexpr std::size_t kSensorErrors = kSensorErrorKinds * kBudgetSensors;
 [[nodiscard]] constexpr std::size_t place_of(const SensorError& error) {
-  return 3 * static_cast<std::size_t>(error.sensor) + static_cast<std::size_t>(error.kind);
+  return kSensorErrorKinds * static_cast<std::size_t>(error.sensor) + static_cast<std::size_t>(error.kind);
 }
 
 /// The symmetric root of the correlation of the errors, 0 for those that are known exactly: sensitivities per standard
@@ -68,7 +85,8 @@ inline constexpr std::size_t kSensorErrors = 3 * kBudgetSensors;
 [[nodiscard]] bool rests_on(Coefficient coefficient, BudgetSensor sensor);
 
 /// The signals with one more error of the size given, in the unit of its kind. A thrust that was computed from the
-/// airspeed follows it. Of a sensor that the flight does not have nothing changes.
+/// airspeed follows it, a deflection with a lag no longer jumps. Of a sensor that the flight does not have nothing
+/// changes.
 [[nodiscard]] FlightSignals with_error(FlightSignals signals, BudgetSensor sensor, SensorErrorKind kind, double size);
 
 /// The signals without the means of the errors.

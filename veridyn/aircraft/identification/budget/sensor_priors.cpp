@@ -44,11 +44,15 @@ KeyTable<KnownSensors> keys_of(BudgetSensor sensor) {
       fmt::format("What is known of the real sensor that recorded a channel, with one standard deviation: in place of "
                   "what is taken of ordinary ones. Likewise {}.",
                   fmt::join(others, ", ")));
-  for (const SensorErrorKind kind : enumerators<SensorErrorKind, 3>()) {
-    const std::string_view range = kind == SensorErrorKind::kScale  ? "`{ value = 1.0, sigma = 0.02 }`"
-                                   : kind == SensorErrorKind::kZero ? "`{ value = \"0 deg\", sigma = \"0.2 deg\" }`"
-                                                                    : "`{ value = \"30 ms\", sigma = \"3 ms\" }`";
-    table.other({std::string(kSensorErrorKindNames[kind]), unit_of(sensor, kind), std::string(range),
+  for (const SensorErrorKind kind : enumerators<SensorErrorKind, kSensorErrorKinds>()) {
+    const bool of_all = kind <= SensorErrorKind::kDelay;
+    const std::string unit = unit_of(sensor, kind);
+    if (!of_all && unit.empty()) continue;
+    const std::string_view range = kind == SensorErrorKind::kScale ? "`{ value = 1.0, sigma = 0.02 }`"
+                                   : unit == "rad"                 ? "`{ value = \"0 deg\", sigma = \"0.2 deg\" }`"
+                                   : unit == "s"                   ? "`{ value = \"30 ms\", sigma = \"3 ms\" }`"
+                                                                   : "`{ value = 0, sigma = 0.01 }`";
+    table.other({std::string(kSensorErrorKindNames[kind]), unit, std::string(range),
                  "as `veridyn priors aircraft` prints", std::string(kSensorErrorKindMeanings[kind]), true},
                 [sensor, kind](const StudyTable& t, const std::string&, KnownSensors& known) {
                   read_error(t, sensor, kind, known);

@@ -258,6 +258,20 @@ std::optional<Evidence> length_row(const Reconstruction& reconstruction, const S
   return row;
 }
 
+/// What accelerometers are off by, after what velocity and attitude say of their zeros.
+std::vector<SensorError> accelerometer_errors(const std::optional<recording::SensorMatrix>& found,
+                                              const KnownSensors& known) {
+  using enum SensorErrorKind;
+  std::vector<SensorError> errors;
+  Eigen::Index axis = 0;
+  for (const SensorErrorKind kind : {kZeroX, kZeroY, kZeroZ}) {
+    const SensorError prior = prior_of(BudgetSensor::kAccelerometer, kind, known);
+    errors.push_back(found ? updated(prior, found->bias(axis), found->bias_sigma(axis)) : prior);
+    ++axis;
+  }
+  return errors;
+}
+
 /// What no channel of a flight can show: the aircraft answers a deflection the same whatever it is called.
 Evidence deflection_row(const Recording& recording) {
   std::vector<std::string> surfaces;
@@ -273,10 +287,11 @@ CheckedFlight recording_evidence(const Recording& recording, const Reconstructio
                                  const ReconstructOptions& options, const Segments& segments,
                                  std::span<const DelayReport> delays, int threads, const KnownSensors& known) {
   // What takes time, side by side.
-  std::vector<Evidence> samples = sample_rows(recording, segments, threads), inertial;
+  std::vector<Evidence> samples = sample_rows(recording, segments, threads);
+  recording::InertialConsistency inertial;
   CheckedFlight air_data;
   const std::array<std::function<void()>, 2> checks{
-      [&] { inertial = recording::inertial_evidence(recording::inertial_consistency(recording, segments.airborne)); },
+      [&] { inertial = recording::inertial_consistency(recording, segments.airborne); },
       [&] {
         const FlowSensors vanes = flow_sensors(options, reconstruction.smoothed);
         const auto check = [&](const Recording& of) {
@@ -292,7 +307,8 @@ CheckedFlight recording_evidence(const Recording& recording, const Reconstructio
   CheckedFlight found;
   const auto add = [&](std::vector<Evidence> more) { found.add({.rows = std::move(more), .errors = {}}); };
   add(std::move(samples));
-  add(std::move(inertial));
+  found.add(
+      {.rows = recording::inertial_evidence(inertial), .errors = accelerometer_errors(inertial.accelerometer, known)});
   add(delay_rows(delays));
   add(vane_delay_rows(delays));
   add(together_rows(delays));

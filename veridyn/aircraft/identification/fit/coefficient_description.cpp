@@ -66,7 +66,8 @@ CoefficientResult with_series(CoefficientResult result, std::span<const Prepared
         const double torque = signals.torque.empty() ? 0.0 : signals.torque[k];
         const double rho = signals.air_density[k];
         result.measured.push_back(select(regressed_coefficients(sample, subject, rho, torque), model.coefficient));
-        result.modelled.push_back(estimated ? model.linear(aero_variables(sample, subject, rho)) : kNaN);
+        result.modelled.push_back(estimated ? model.linear(aero_variables(signals.sample_in_air(k), subject, rho))
+                                            : kNaN);
       }
     }
   }

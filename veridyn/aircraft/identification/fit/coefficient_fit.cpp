@@ -208,7 +208,9 @@ CoefficientChecks check_fit(const CoefficientFit& fit, double row_interval_s, co
     checks.contradiction_p = agreement_beyond_scatter(chosen, *each, held_out, view);
     return checks;
   }
-  unseen.error_covariance(n, n) = data.error_covariance(n, n);
+  // In another part of the flight the regressors may share more of their errors with z than that.
+  unseen.error_covariance(n, n) =
+      std::max(data.error_covariance(n, n), least_response_variance(unseen.error_covariance));
   const RegressionEstimate again = fit.by_output_error
                                        ? fit.of_holdout.value_or(RegressionEstimate{})
                                        : estimation::estimate(unseen, chosen.method, view.regression_options());

@@ -40,14 +40,13 @@ double unexplained_variance(const RegressionData& data) {
   return data.regressand.squaredNorm() / rows - explained;
 }
 
-/// The smallest W_zz with which W is still a covariance: what the errors that z shares with the regressors amount to.
+}  // namespace
+
 double least_response_variance(const Eigen::MatrixXd& W) {
   const auto n = W.rows() - 1;
   const Eigen::VectorXd shared = W.topRightCorner(n, 1);
   return 1.001 * shared.dot(numerics::shortest_least_squares(W.topLeftCorner(n, n), shared));
 }
-
-}  // namespace
 
 EquationError equation_error(const RegressionData& data) {
   const double unexplained = unexplained_variance(data);

@@ -17,6 +17,9 @@ struct EquationError {
 /// (equation error).
 [[nodiscard]] EquationError equation_error(const estimation::RegressionData& data);
 
+/// The smallest W_zz with which W is still a covariance: what the errors that z shares with the regressors amount to.
+[[nodiscard]] double least_response_variance(const Eigen::MatrixXd& W);
+
 /// Residual variance of an estimate over what the errors of a row leave of it, v' W v with v = (theta, -1).
 [[nodiscard]] double residual_ratio(const estimation::RegressionData& data, const Eigen::VectorXd& theta);
 

@@ -260,7 +260,8 @@ ManoeuvreDelays delays_by_manoeuvres(const FlightSignals& signals, const AxisSeg
   std::vector<SensorError> elsewhere = priors;
   bool differs = false;
   for (SensorError& error : elsewhere) {
-    const auto other = std::ranges::find(other_start, error.sensor, &SensorError::sensor);
+    const auto other = std::ranges::find_if(
+        other_start, [&](const SensorError& e) { return e.sensor == error.sensor && e.kind == error.kind; });
     if (other == other_start.end()) continue;
     differs = differs || std::abs(other->mean - error.mean) > kConverged_s;
     error.mean = other->mean;

@@ -10,14 +10,15 @@
 
 namespace veridyn::aircraft {
 
-/// Delays of a vane and of the surfaces of one axis after its manoeuvres.
+/// Delays of a vane and of the surfaces of one axis after its manoeuvres, and lags of these surfaces.
 struct ManoeuvreDelays {
   std::vector<SensorError> errors;
   Eigen::MatrixXd covariance;  ///< [s^2]
 };
 
-/// How late vane, surfaces and accelerometer of an axis are against the gyro, by what its manoeuvres say of the prior:
-/// the rows of its coefficients z = X theta + e with X and z at shifted signals, linear about the delays d so far,
+/// How late vane, surfaces and accelerometer of an axis are against the gyro, and with what lag surfaces follow, by
+/// what its manoeuvres say of the prior: the rows of its coefficients z = X theta + e with X and z at shifted signals,
+/// linear about the delays d so far,
 ///     z - X theta = D d + e,   D = (dX/dd) theta - dz/dd,
 /// for all coefficients of the axis with one d, weighted by their residuals. Instruments are the axis's deflections,
 /// now and up to a second ago: gusts, noise of the vanes and what a gust does besides are independent of what the pilot

@@ -36,15 +36,17 @@ Eigen::MatrixXd sensor_sensitivity(const FlightSignals& signals, const SensorBud
 
 IntervalParts interval_parts(const Eigen::VectorXd& noise, const Eigen::MatrixXd& sensors,
                              const Eigen::MatrixXd& body) {
+  using enum SensorErrorKind;
   Eigen::VectorXd air_data = Eigen::VectorXd::Zero(noise.size()), delays = air_data;
+  Eigen::VectorXd own = body.rowwise().squaredNorm();
   for (const BudgetSensor sensor : enumerators<BudgetSensor, kBudgetSensors>()) {
-    for (const SensorErrorKind kind : enumerators<SensorErrorKind, 3>()) {
+    for (const SensorErrorKind kind : enumerators<SensorErrorKind, kSensorErrorKinds>()) {
       const auto column = sensors.col(signed_index(place_of({.sensor = sensor, .kind = kind})));
-      (kind == SensorErrorKind::kDelay ? delays : air_data) += column.cwiseAbs2();
+      const bool place = kind == kPlaceX || kind == kPlaceY || kind == kPlaceZ;
+      (kind == kDelay || kind == kLag ? delays : place ? own : air_data) += column.cwiseAbs2();
     }
   }
-  return {
-      .noise = noise, .air_data = air_data.cwiseSqrt(), .delays = delays.cwiseSqrt(), .body = body.rowwise().norm()};
+  return {.noise = noise, .air_data = air_data.cwiseSqrt(), .delays = delays.cwiseSqrt(), .body = own.cwiseSqrt()};
 }
 
 estimation::Evidence sensor_share_row(const std::string& coefficient, std::span<const Parameter> parameters,

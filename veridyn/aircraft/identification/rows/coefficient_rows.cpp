@@ -161,7 +161,7 @@ RegressionData coefficient_data(const CoefficientModel& model, const FlightSigna
     const FlightSample<double> sample = signals.sample(k);
     const double rho = signals.air_density[k];
     const double torque = signals.torque.empty() ? 0.0 : signals.torque[k];
-    data.regressors.row(i) = model.regressors(aero_variables(sample, subject, rho)).transpose();
+    data.regressors.row(i) = model.regressors(aero_variables(signals.sample_in_air(k), subject, rho)).transpose();
     data.regressand(i) = select(regressed_coefficients(sample, subject, rho, torque), model.coefficient);
   }
   if (count == 0) return data;

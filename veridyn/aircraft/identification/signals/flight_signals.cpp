@@ -462,6 +462,7 @@ FlightSignals prepare_signals(const MappedRecording& mapped, const Recording& sm
   flight.roll_sigma = typical_sigma(smoothed, "sigma_roll");
   flight.pitch_sigma = typical_sigma(smoothed, "sigma_pitch");
   flight.over_ground = smoothed.has("vel_north");
+  flight.air_rates = air_rates(smoothed, grid, flight[F::kAirspeed].value, common.smooth, subject);
   if (!flight.over_ground && smoothed.has("gust_x")) velocity_through_mean_air(smoothed, flight);
   return flight;
 }

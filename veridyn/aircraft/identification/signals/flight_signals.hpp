@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "veridyn/aircraft/identification/signals/air_rates.hpp"
 #include "veridyn/aircraft/identification/signals/measured_coefficients.hpp"
 #include "veridyn/aircraft/model/subject.hpp"
 #include "veridyn/aircraft/reconstruction/corrected_flow.hpp"
@@ -60,8 +61,12 @@ struct FlightSignals : recording::GridSignals<FlightSignal, kFlightSignals> {
   std::vector<double> wind_north, wind_east, wind_down;  ///< smoothed slow wind
   std::vector<double> alpha_smoothed, beta_smoothed;     ///< the smoother's, whatever is regressed on
 
+  AirRates air_rates;  ///< beside the body's own
+
   /// The sample at grid point k; missing signals are 0.
   [[nodiscard]] FlightSample<double> sample(std::size_t k) const;
+  /// The same with the rates against the air.
+  [[nodiscard]] FlightSample<double> sample_in_air(std::size_t k) const { return air_rates.against_air(sample(k), k); }
 };
 
 /// Resamples, filters and differentiates the mapped channels; takes airspeed, attitude, wind and (where there is no

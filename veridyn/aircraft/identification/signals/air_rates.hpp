@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "veridyn/aircraft/identification/signals/measured_coefficients.hpp"
+#include "veridyn/aircraft/model/subject.hpp"
+#include "veridyn/core/recording.hpp"
+#include "veridyn/numerics/filters.hpp"
+#include "veridyn/numerics/resample.hpp"
+
+/// Rates with which an aircraft turns against the air around it, beside its own: gusts that differ over the aircraft,
+/// and the downwash that reaches the tail late.
+namespace veridyn::aircraft {
+
+/// Along a flight. What of it is in the regressors is a share of each, 0 by default: an error of the budget.
+struct AirRates {
+  /// q_g and r_g of the reconstruction's gusts by MIL-F-8785C, as `GustGradients` [rad/s]; empty without gusts.
+  std::vector<double> gust_q, gust_r;
+  /// What alpha' of a tail three chords behind the wing differs by from alpha' in still air [rad/s].
+  std::vector<double> downwash_q;
+  double turn_share = 0.0, downwash_share = 0.0;
+
+  /// The sample with the rates against the air at grid point k.
+  [[nodiscard]] FlightSample<double> against_air(FlightSample<double> sample, std::size_t k) const;
+};
+
+/// From channels `gust_y`, `gust_z` and `alpha` of a reconstruction, smoothed like the other signals.
+/// @param airspeed  on the grid; rates are 0 where it is missing
+[[nodiscard]] AirRates air_rates(const Recording& smoothed, const numerics::UniformGrid& grid,
+                                 const std::vector<double>& airspeed, const numerics::FirKernel& smooth,
+                                 const Subject& subject);
+
+}  // namespace veridyn::aircraft
