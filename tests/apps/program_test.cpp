@@ -134,7 +134,7 @@ TEST_F(Program, GoesFromASimulatedFlightToAValidatedModel) {
   EXPECT_EQ(Cm_alpha->status, estimation::ParameterStatus::kIdentified);
   // The truth of the built-in subject; three standard deviations, of which the scale of the vane is most.
   EXPECT_NEAR(Cm_alpha->value, -0.7, 3.0 * Cm_alpha->sigma);
-  EXPECT_LT(Cm_alpha->sigma, 0.1);
+  EXPECT_LT(Cm_alpha->sigma, 0.15);  // the lag of the elevator is unknown too
 
   // The same estimate on a flight with another seed.
   const Outcome validated =

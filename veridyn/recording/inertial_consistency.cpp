@@ -175,6 +175,8 @@ InertialConsistency compare_velocity(const Recording& recording, const InertialS
     by_force.add(X, acceleration - gravity, delays);
     // Columns of the unit gain: what the accelerometer says as it is.
     const Vector3 said = force + gravity;
+    // A velocity that is turned as a whole is what its gains are to show.
+    delays.col(3).setZero();
     by_velocity.add(regressors(Matrix3::Identity(), acceleration), said, -delays);
   }
   if (const std::optional<Solved> force = by_force.solve(true)) {

@@ -56,12 +56,13 @@ Result result_of(std::size_t car, CarTyre tyre, std::size_t drive, std::uint64_t
   return result;
 }
 
-// A car that leans, livelier than gentle: roll is taken. A shortfall: with roll steer open one of the three is 35 %
-// off, where all were within 3 % while the model had none.
+// A car that leans, livelier than gentle: roll is taken. A shortfall: its tyres do not lag, which no tyre does, and I_z
+// is 29 % off for it, +- 57 %.
 TEST(RollingCars, ADriveGivesTheStiffnessesOfACarThatLeans) {
   const Result result = result_of(0, CarTyre::kLinear, 3, 1);
   EXPECT_TRUE(has_roll(result.structure));
-  EXPECT_LT(result.worst, 0.5);
+  EXPECT_LT(result.worst, 0.35);
+  EXPECT_EQ(result.covered, result.intervals);
 }
 
 // Tyres that lag hide in the noise of a gentle drive: taken as if they did not, I_z came out 5 to 8 % high beyond its
@@ -85,12 +86,12 @@ TEST(RollingCars, AGentleDriveSaysWhatItLeavesOpenOfTheStructure) {
   ASSERT_NE(row, found.checks.end());
 }
 
-// On tyres whose stiffness falls with their force saturation is taken: within 3 % where linear tyres are 5 to 50 % off.
+// On tyres whose stiffness falls with their force saturation is taken: within 6 % where linear tyres are 5 to 50 % off.
 TEST(RollingCars, TyresThatSaturateAreToldFromSofterOnes) {
   const Result result = result_of(5, CarTyre::kFiala, 3, 4);
   EXPECT_TRUE(saturates(result.structure));
-  // A shortfall: with roll steer and trail open one of the three is 20 % off.
-  EXPECT_LT(result.worst, 0.3);
+  EXPECT_LT(result.worst, 0.1);
+  EXPECT_EQ(result.covered, result.intervals);
 }
 
 // Ten cars, six drives of each, three kinds of tyres, five noises of each, no two alike; an hour and a half. Writes

@@ -436,7 +436,7 @@ void OutputErrorOptions::validate(const ParametricModel& model) const {
                      fmt::format("has {} values for {} outputs; must have one each, all > 0", noise_start.size(), p));
   }
   for (const Eigen::VectorXd* v : {&input_noise.variance, &input_noise.autocovariance, &input_noise.memory}) {
-    if (v->size() != 0 && v->size() != p)
+    if (v->size() != input_noise.variance.size() || (v->size() != 0 && v->size() != p))
       throw InputError("output_error.input_noise", fmt::format("has {} values for {} outputs", v->size(), p));
   }
   if (noise == OutputNoise::kGiven && noise_start.size() == 0)

@@ -172,8 +172,8 @@ struct OutputErrorEstimate {
 ///
 /// With `model_error` the likelihood is taken to the power 1/D against priors that count in full, and E/p P S'R^-1S
 /// P is added to the covariance: D = M + E/p with E the coloured power of the whitened residual (its autocovariance
-/// over the next five samples, what exceeds two standard errors of white noise, and by a tenth what `input_noise`
-/// makes, which is known no better), p the number of shared unknowns and M in how many samples noise, coloured by that
+/// over the next five samples, what exceeds two standard errors and 1.1 times that of `input_noise`, which is known no
+/// better), p the number of shared unknowns and M in how many samples noise, coloured by that
 /// of the inputs, is one observation (1 without). A
 /// coarsened posterior (Miller & Dunson 2019, J. American Statistical Association 114) whose power is that of what the
 /// model misses: the samples are as wrong along the p parameters as they show to be beside.

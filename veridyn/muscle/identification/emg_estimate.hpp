@@ -45,12 +45,13 @@ struct EmgEstimate {
 /// the model's own response to them, is part of the residual's covariance, and again about the errors that follow from
 /// its residual, until parameters and errors rest. At rest this is the least of
 ///
-///     1/2 sum (z - y(theta, c))^2/sigma^2 + 1/2 sum c^2 + priors of theta.
+///     1/2 sum (z - y(theta, c))^2/sigma^2 + 1/2 sum (c/f)^2 + priors of theta.
 ///
+/// c in standard deviations as stated, f how many of them each part is found to have.
 /// About the recorded EMG alone gains would be too low: the errors are in the model's derivatives as well as in the
 /// residual (errors in variables), and activation rises faster than it falls.
 /// @param responses what the search is answered by: the model, or a view of it (`estimation::LoggedModel`)
-/// @param noise standard deviation by output; empty: found from the residual (expectation maximisation)
+/// @param noise standard deviation by output; empty: found from the residual
 [[nodiscard]] EmgEstimate estimate_from_emg(const EmgDrivenModel& model, const estimation::ParametricModel& responses,
                                             const std::vector<estimation::RowMatrix>& measured,
                                             const Eigen::VectorXd& noise, const TaskEstimateOptions& options,

@@ -6,10 +6,15 @@
 #include <vector>
 
 #include "veridyn/aircraft/identification/budget/sensor_error.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::aircraft {
+
+/// How well attitude and heading of an ordinary autopilot are known in the mean [rad]: zeros of vanes and of the
+/// accelerometer are measured against them.
+inline constexpr double kAttitudeZero = 0.5 * kDegree, kHeadingZero = 2.0 * kDegree;
 
 /// A line of the table `sensor_priors.inc`.
 struct SensorPrior {

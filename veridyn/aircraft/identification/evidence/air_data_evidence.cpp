@@ -18,11 +18,6 @@ using estimation::kBeyondChance;
 using estimation::Outcome;
 using estimation::row_of;
 
-/// How well attitude and heading of an ordinary autopilot are known in the mean: the zero of a vane is measured against
-/// them.
-constexpr double kAttitudeZero = 0.5 * kDegree;
-constexpr double kHeadingZero = 2.0 * kDegree;
-
 Evidence airspeed_row(const Determined& scale) {
   /// An error of 1 % changes coefficients by 2 %: a scale that is not known to that is not verified.
   constexpr double kWellDetermined = 0.01;

@@ -266,7 +266,9 @@ std::vector<SensorError> accelerometer_errors(const std::optional<recording::Sen
   Eigen::Index axis = 0;
   for (const SensorErrorKind kind : {kZeroX, kZeroY, kZeroZ}) {
     const SensorError prior = prior_of(BudgetSensor::kAccelerometer, kind, known);
-    errors.push_back(found ? updated(prior, found->bias(axis), found->bias_sigma(axis)) : prior);
+    // A wrong zero of roll or pitch shows as much along y or x.
+    const double attitude = kind == kZeroZ ? 0.0 : kGravity * kAttitudeZero;
+    errors.push_back(found ? updated(prior, found->bias(axis), std::hypot(found->bias_sigma(axis), attitude)) : prior);
     ++axis;
   }
   return errors;

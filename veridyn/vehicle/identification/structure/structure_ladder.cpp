@@ -94,13 +94,9 @@ std::optional<DelayByModel> delay_of(const VehicleProblem& problem, const Output
   return DelayByModel{p.value, p.sigma};
 }
 
-/// The options for a structure. Saturation has no relaxation length where the data did not ask for one.
-VehicleIdentifyOptions with_structure(VehicleIdentifyOptions options, DriveStructure structure, bool relaxes,
+VehicleIdentifyOptions with_structure(VehicleIdentifyOptions options, DriveStructure structure,
                                       const DriveEffects& effects) {
   options.model = with_effects(with_structure(options.model, structure), effects);
-  if (!saturates(structure) || relaxes) return options;
-  options.model.free[DriveUnknown::kRelaxationLength] = false;
-  options.model.start[DriveUnknown::kRelaxationLength] = 0.0;
   return options;
 }
 
@@ -115,7 +111,9 @@ class Climb {
 
   StructureLadder run() {
     if (problem_.options.structure) {
-      fit(*problem_.options.structure, true);
+      const DriveStructure structure = *problem_.options.structure;
+      if (structure != DriveStructure::kBicycle) begin_with_known_sensors(structure, effects_given());
+      fit(structure, effects_given());
     } else {
       climb_to_roll();
       if (takes_roll()) climb_beyond_roll(effects_given());
@@ -138,21 +136,14 @@ class Climb {
     return !ladder_.empty() && has_roll(taken().structure) && !contradicts() && !progress_.interrupted();
   }
 
-  /// Fits one more structure, from where the last one ended.
-  void fit(DriveStructure structure, bool relaxes) { fit(structure, relaxes, effects_given()); }
-  void fit(DriveStructure structure, bool relaxes, const DriveEffects& effects) {
+  /// Fits one more structure, from where the search is.
+  void fit(DriveStructure structure, const DriveEffects& effects) {
     progress_.stage(fmt::format("output error, structure: {}", name_of(structure, effects)));
-    options_.push_back(with_structure(problem_.options, structure, relaxes, effects));
-    fits_.emplace_back();
-    ladder_.tried.emplace_back();
-    fit_again(fits_.size() - 1);
-  }
-
-  /// The fit of a rung from where the search is, under the filter that there is.
-  void fit_again(std::size_t rung) {
-    fits_[rung] =
-        estimate_by_output_error(given(rung), equation_error_, search_start_, SearchEffort::kToCompare, progress_);
-    ladder_.tried[rung] = tried(given(rung), fits_[rung], progress_);
+    const std::size_t rung = fits_.size();
+    options_.push_back(with_structure(problem_.options, structure, effects));
+    fits_.push_back(
+        estimate_by_output_error(given(rung), equation_error_, search_start_, SearchEffort::kToCompare, progress_));
+    ladder_.tried.push_back(tried(given(rung), fits_[rung], progress_));
     if (fits_[rung].raw.usable()) search_start_ = fits_[rung].raw.theta;
   }
 
@@ -162,7 +153,7 @@ class Climb {
       if (progress_.interrupted()) return;
       if (structure == DriveStructure::kScaledAccel && !problem_.signals[DriveSignal::kAccelY].available()) continue;
       if (structure != DriveStructure::kBicycle) begin_with_known_sensors(structure, effects_given());
-      fit(structure, false);
+      fit(structure, effects_given());
       if (contradicts() || is_exact(fits_.back())) return;
     }
   }
@@ -171,7 +162,7 @@ class Climb {
   /// what the body does, and a search with them may stay there.
   void begin_with_known_sensors(DriveStructure structure, const DriveEffects& effects) {
     progress_.stage(fmt::format("output error, start of structure: {}", name_of(structure, effects)));
-    VehicleIdentifyOptions known = with_structure(problem_.options, structure, true, effects);
+    VehicleIdentifyOptions known = with_structure(problem_.options, structure, effects);
     known.model = without_budget(known.model);
     const OutputErrorResult first = estimate_by_output_error(with_options(problem_, known), equation_error_,
                                                              known_start_, SearchEffort::kToCompare, progress_);
@@ -189,7 +180,7 @@ class Climb {
         begin_with_known_sensors(structure, effects);
       else
         search_start_ = fits_[roll + 1].raw.theta;
-      fit(structure, true, effects);
+      fit(structure, effects);
     }
   }
 
@@ -207,7 +198,7 @@ class Climb {
         if (!told[effect] || effects[effect] || progress_.interrupted()) continue;
         effects[effect] = true;
         search_start_ = fits_[before].raw.theta;
-        fit(ladder_.tried[before].structure, relaxes(before), effects);
+        fit(ladder_.tried[before].structure, effects);
       }
       chosen = choose_structure(ladder_.tried);
       more = chosen != before;
@@ -237,14 +228,9 @@ class Climb {
   void climb_again(const DriveEffects& effects) {
     for (const DriveStructure structure : {DriveStructure::kBicycle, DriveStructure::kRoll}) {
       if (progress_.interrupted()) return;
-      fit(structure, false, effects);
+      fit(structure, effects);
     }
     if (has_roll(taken().structure) && !progress_.interrupted()) climb_beyond_roll(effects);
-  }
-
-  /// Whether the tyres of a rung lag.
-  [[nodiscard]] bool relaxes(std::size_t rung) const {
-    return options_[rung].model.free[DriveUnknown::kRelaxationLength];
   }
 
   /// What the others leave in doubt.

@@ -28,12 +28,13 @@ struct StructureLadder {
   [[nodiscard]] bool empty() const { return tried.empty(); }
 };
 
-/// Fits the structure that the study fixes, or all of them, each from where the one before it ended. Up to roll all are
-/// tried, however little the bicycle leaves: in a gentle drive a stiffness that is a tenth too low leaves no more than
-/// the sensors do. Where roll is likelier what tyres do beside is tried too (relaxation, saturation). One that is not
-/// taken leaves a doubt, by its probability. A recording that contradicts itself (a failed row) says nothing of the
-/// structure: only the bicycle is fitted to it; nor is anything richer fitted to rounding errors. Interrupted, it takes
-/// the structure so of those whose fits had ended; of none, where the search of the first stood.
+/// Fits the structure that the study fixes, or all of them, each from where it ends with sensors that are taken for
+/// exact. Up to roll all are tried, however little the bicycle leaves: in a gentle drive a stiffness that is a tenth
+/// too low leaves no more than the sensors do. Where roll is likelier what tyres do beside is tried too (relaxation,
+/// saturation). One that is not taken leaves a doubt, by its probability. A recording that contradicts itself (a failed
+/// row) says nothing of the structure: only the bicycle is fitted to it; nor is anything richer fitted to rounding
+/// errors. Interrupted, it takes the structure so of those whose fits had ended; of none, where the search of the first
+/// stood.
 [[nodiscard]] StructureLadder climb_structures(const VehicleProblem& problem,
                                                const EquationErrorEstimates* equation_error, Progress& progress);
 

@@ -27,7 +27,8 @@ std::size_t choose_structure(std::span<const TriedStructure> tried) {
   for (std::size_t i = chosen + 1; i < tried.size(); ++i) {
     if (!tried[i].usable || tried[i].at_bound) continue;
     const double gain = tried[chosen].negative_log_likelihood - tried[i].negative_log_likelihood;
-    const bool lags = has_relaxation(tried[i].structure) && tried[chosen].structure == DriveStructure::kRoll;
+    const bool lags = tried[i].structure == DriveStructure::kRelaxation &&
+                      tried[chosen].structure == DriveStructure::kRoll && tried[i].effects == tried[chosen].effects;
     const bool likelier = probability_against(tried[i], tried[chosen]) > (lags ? 1.0 - kProbable : kProbable) &&
                           (has_roll(tried[chosen].structure) || gain > kLikelier * tried[i].inflation);
     const bool worse = tried[i].holdout_misfit > tried[chosen].holdout_misfit + kNoWorse;

@@ -38,10 +38,9 @@ struct StructureDoubt {
   std::vector<std::pair<std::string, double>> difference = {};
 };
 
-/// Probability of a structure against another, both as likely before the data and fitted under one weighing of the
-/// residual: the ratio of their evidences (Laplace's approximation; MacKay 1992, Neural Computation 4(3)), in which an
-/// unknown that it adds costs what the data narrow its prior by. 0 where it has no usable fit, and for a richer one at
-/// a bound, where it is the simpler one.
+/// Probability of a structure against another, both as likely before the data: the ratio of their evidences (Laplace's
+/// approximation; MacKay 1992, Neural Computation 4(3)), in which an unknown that it adds costs what the data narrow
+/// its prior by. 0 where it has no usable fit, and for a richer one at a bound, where it is the simpler one.
 [[nodiscard]] double probability_against(const TriedStructure& other, const TriedStructure& taken);
 
 /// A richer structure is taken where its probability against the one taken so far is larger than this; tyres that lag
