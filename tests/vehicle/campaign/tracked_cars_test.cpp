@@ -74,8 +74,9 @@ TEST(TrackedCars, LoseGripAndAreFoundToWithinFourSeconds) {
                                    {.duration_s = 100.0, .change_s = kDrop_s, .grip = kGrip});
     EXPECT_LT(result.found_s, 4.0) << car;
     EXPECT_EQ(result.false_alarms, 0u) << car;
-    // Without the body's lean stiffnesses were up to 37 % low.
-    EXPECT_LT(result.worst, 0.06) << car;
+    // Without the body's lean stiffnesses were up to 37 % low. What the beginning of a gentle drive leaves open of the
+    // body, with errors of its sensors, is in them: 12 and 7 %.
+    EXPECT_LT(result.worst, 0.13) << car;
   }
 }
 

@@ -221,6 +221,7 @@ class Estimation {
     }
     problem_.evaluate(true);
     result_.negative_log_likelihood = problem_.negative_log_likelihood();
+    result_.samples_as_one = problem_.samples_per_independent_one();
     error_bars();
     for (std::size_t s = 0; s < problem_.segments(); ++s) {
       result_.predicted.push_back(problem_.predicted(s));

@@ -125,6 +125,7 @@ struct OutputErrorEstimate {
   std::vector<Direction> unidentifiable;  ///< combinations that the data (and priors) do not determine
   std::vector<Direction> held;    ///< of these, along which `hold_undetermined` kept the parameters at their start
   double autocorrelation = 1.0;   ///< by how much it widens what the data say: the median over the parameters
+  double samples_as_one = 1.0;    ///< D: so many samples count as one against priors, with `model_error`
   double condition_number = 0.0;  ///< of the information's root over the shared parameters, columns of unit length
   /// Share of each parameter's variance before the data that the data removed: 1 - (sigma/prior_sigma)^2; 1 without a
   /// prior.

@@ -50,7 +50,10 @@ void OutputErrorProblem::start_noise() {
 }
 
 double OutputErrorProblem::update_noise() {
-  if (!estimates_noise()) return 0.0;
+  if (!estimates_noise()) {
+    if (options_.model_error) update_discount();
+    return 0.0;
+  }
   const bool full = options_.noise == OutputNoise::kFull;
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(outputs_, outputs_);
   Eigen::VectorXd count = Eigen::VectorXd::Zero(outputs_);

@@ -123,6 +123,7 @@ class Profiling {
       result.message = fmt::format("no profile: {}", after.usable() ? before.message : after.message);
       return false;
     }
+    samples_as_one_ = after.samples_as_one;
     const double old = cost(all, before, std::nullopt), now = cost(all, after, std::nullopt);
     if (now < old) {
       theta_ = after.theta;
@@ -146,7 +147,7 @@ class Profiling {
                             std::optional<std::size_t> fixed) const {
     double sum = e.negative_log_likelihood;
     const auto add = [&](double value, const ModelParameter& p) {
-      if (std::isfinite(p.prior_sigma)) sum += 0.5 * std::pow((value - p.start) / p.prior_sigma, 2);
+      if (std::isfinite(p.prior_sigma)) sum += 0.5 * samples_as_one_ * std::pow((value - p.start) / p.prior_sigma, 2);
     };
     for (std::size_t i = 0; i < model_.parameters().size(); ++i) {
       const ModelParameter& p = model_.parameters()[i];
@@ -357,6 +358,7 @@ class Profiling {
   Eigen::MatrixXd covariance_;
   Eigen::VectorXd theta_;
   std::vector<std::vector<ModelParameter>> initial_;
+  double samples_as_one_ = 1.0;  // of the estimate, for priors
   double cost_ = 0.0;
   double threshold_ = 0.0;
 };

@@ -71,7 +71,7 @@ const estimation::Evidence& parts_of(const VehicleIdentification& id) {
 }
 
 TEST(CompareParts, WidensTheIntervalsOfACarThatChangesALittle) {
-  const VehicleIdentification same = of_two_halves(1.0), changed = of_two_halves(1.04), other = of_two_halves(1.3);
+  const VehicleIdentification same = of_two_halves(1.0), changed = of_two_halves(1.05), other = of_two_halves(1.3);
   ASSERT_EQ(same.chosen, VehicleMethod::kOutputError);
   EXPECT_EQ(parts_of(same).outcome, Outcome::kPassed) << says(parts_of(same));
   EXPECT_EQ(parts_of(changed).outcome, Outcome::kCare) << says(parts_of(changed));
@@ -80,7 +80,7 @@ TEST(CompareParts, WidensTheIntervalsOfACarThatChangesALittle) {
   EXPECT_GT(wide->sigma, 2.0 * narrow->sigma);
   // What both halves are lies inside the interval then.
   EXPECT_LE(wide->low95, 55000.0);
-  EXPECT_GE(wide->high95, 1.04 * 55000.0);
+  EXPECT_GE(wide->high95, 1.05 * 55000.0);
   EXPECT_EQ(other.verdict, estimation::GroupVerdict::kEffective) << other.reason;
 }
 

@@ -41,7 +41,8 @@ std::optional<PartsAgreement> by_output_error(const VehicleProblem& problem, con
   // one-step estimator), and if they are not, few show it.
   options.noise_start = here.raw.noise_covariance.diagonal().cwiseSqrt();
   options.model_error = true;
-  options.max_relaxations = 1;
+  // After the first one knows how much its samples count for, as the other part does.
+  options.max_relaxations = 2;
   options.max_steps = 3;
   options.max_lag =
       std::max<Eigen::Index>(20, static_cast<Eigen::Index>(kLongestMemory_s * problem.signals.grid.rate_Hz()));

@@ -94,9 +94,13 @@ std::optional<DelayByModel> delay_of(const VehicleProblem& problem, const Output
   return DelayByModel{p.value, p.sigma};
 }
 
-VehicleIdentifyOptions with_structure(VehicleIdentifyOptions options, DriveStructure structure,
+/// The options for a structure. Saturation has no relaxation length where tyres without one are likelier.
+VehicleIdentifyOptions with_structure(VehicleIdentifyOptions options, DriveStructure structure, bool relaxes,
                                       const DriveEffects& effects) {
   options.model = with_effects(with_structure(options.model, structure), effects);
+  if (!saturates(structure) || relaxes) return options;
+  options.model.free[DriveUnknown::kRelaxationLength] = false;
+  options.model.start[DriveUnknown::kRelaxationLength] = 0.0;
   return options;
 }
 
@@ -137,10 +141,10 @@ class Climb {
   }
 
   /// Fits one more structure, from where the search is.
-  void fit(DriveStructure structure, const DriveEffects& effects) {
+  void fit(DriveStructure structure, const DriveEffects& effects, bool relaxes = true) {
     progress_.stage(fmt::format("output error, structure: {}", name_of(structure, effects)));
     const std::size_t rung = fits_.size();
-    options_.push_back(with_structure(problem_.options, structure, effects));
+    options_.push_back(with_structure(problem_.options, structure, relaxes, effects));
     fits_.push_back(
         estimate_by_output_error(given(rung), equation_error_, search_start_, SearchEffort::kToCompare, progress_));
     ladder_.tried.push_back(tried(given(rung), fits_[rung], progress_));
@@ -162,7 +166,7 @@ class Climb {
   /// what the body does, and a search with them may stay there.
   void begin_with_known_sensors(DriveStructure structure, const DriveEffects& effects) {
     progress_.stage(fmt::format("output error, start of structure: {}", name_of(structure, effects)));
-    VehicleIdentifyOptions known = with_structure(problem_.options, structure, effects);
+    VehicleIdentifyOptions known = with_structure(problem_.options, structure, true, effects);
     known.model = without_budget(known.model);
     const OutputErrorResult first = estimate_by_output_error(with_options(problem_, known), equation_error_,
                                                              known_start_, SearchEffort::kToCompare, progress_);
@@ -173,14 +177,16 @@ class Climb {
   /// What tyres do beside rolling.
   void climb_beyond_roll(const DriveEffects& effects) {
     const std::size_t roll = ladder_.tried.size() - 1;
+    bool relaxes = true;
     for (const DriveStructure structure :
          {DriveStructure::kRelaxation, DriveStructure::kSaturation, DriveStructure::kMagicFormula}) {
       if (progress_.interrupted()) return;
       if (structure == DriveStructure::kRelaxation)
         begin_with_known_sensors(structure, effects);
       else
-        search_start_ = fits_[roll + 1].raw.theta;
-      fit(structure, effects);
+        search_start_ = fits_[relaxes ? roll + 1 : roll].raw.theta;
+      fit(structure, effects, relaxes);
+      if (structure == DriveStructure::kRelaxation) relaxes = taken().structure == DriveStructure::kRelaxation;
     }
   }
 
@@ -198,7 +204,7 @@ class Climb {
         if (!told[effect] || effects[effect] || progress_.interrupted()) continue;
         effects[effect] = true;
         search_start_ = fits_[before].raw.theta;
-        fit(ladder_.tried[before].structure, effects);
+        fit(ladder_.tried[before].structure, effects, options_[before].model.free[DriveUnknown::kRelaxationLength]);
       }
       chosen = choose_structure(ladder_.tried);
       more = chosen != before;
