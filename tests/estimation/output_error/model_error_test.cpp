@@ -111,7 +111,7 @@ TEST(ModelError, DoesNotTakeNoiseOfTheInputsForIt) {
     ASSERT_TRUE(with.usable()) << with.message;
     widened += with.covariance_by_model(0, 0) > 0.0 ? 1 : 0;
     widened_without += without.covariance_by_model(0, 0) > 0.0 ? 1 : 0;
-    // A prior as wide as the estimate is without one halves its variance where both count for what they say.
+    // A prior with the standard deviation of the estimate without it halves the variance, if both weigh as they should.
     free_sigma += with.parameters[0].sigma / trials;
     model.unknowns[0].start = 1.0;
     model.unknowns[0].prior_sigma = with.parameters[0].sigma;

@@ -28,10 +28,8 @@ Eigen::MatrixXd simulated(const DriveNoise& noise, Eigen::Index samples) {
   Eigen::MatrixXd out(samples, noise.C.rows());
   Eigen::VectorXd x = Eigen::VectorXd::Zero(noise.F.rows());
   for (Eigen::Index k = 0; k < samples; ++k) {
-    Eigen::VectorXd y = noise.C * x;
-    for (Eigen::Index j = 0; j < y.size(); ++j) y(j) += std::sqrt(noise.R(j, j)) * normal(random);
+    out.row(k) = (noise.C * x).transpose();
     x = noise.F * x + noise.G * normal(random);
-    out.row(k) = y.transpose();
   }
   return out;
 }
@@ -43,8 +41,7 @@ TEST(DriveNoise, LeavesTheShareOfTheBandOfTheSteeringsNoise) {
   direct.B.setZero();
   direct.C.setZero();
   direct.D << 1.0, 2.0;
-  const DriveNoise noise =
-      drive_noise(direct, {.sigma = 0.01, .band_share = 0.05, .step = kStep}, Eigen::Vector2d::Zero());
+  const DriveNoise noise = drive_noise(direct, {.sigma = 0.01, .band_share = 0.05, .step = kStep});
   constexpr Eigen::Index kSamples = 20000;
   const Eigen::MatrixXd shown = simulated(noise, kSamples);
   EXPECT_NEAR(std::sqrt(shown.col(0).squaredNorm() / kSamples) / (0.01 * std::sqrt(0.05)), 1.0, 0.07);
@@ -53,8 +50,7 @@ TEST(DriveNoise, LeavesTheShareOfTheBandOfTheSteeringsNoise) {
 
 // Slow noise moves a first-order follower as it is, and its rate hardly: at a corner of a tenth of the follower's.
 TEST(DriveNoise, ComesThroughTheVehicle) {
-  const DriveNoise noise =
-      drive_noise(first_order(), {.sigma = 0.01, .band_share = 0.002, .step = kStep}, Eigen::Vector2d::Zero());
+  const DriveNoise noise = drive_noise(first_order(), {.sigma = 0.01, .band_share = 0.002, .step = kStep});
   constexpr Eigen::Index kSamples = 400000;
   const Eigen::MatrixXd shown = simulated(noise, kSamples);
   EXPECT_NEAR(std::sqrt(shown.col(0).squaredNorm() / kSamples) / (0.01 * std::sqrt(0.002)), 1.0, 0.1);

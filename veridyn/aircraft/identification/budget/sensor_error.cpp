@@ -36,8 +36,8 @@ std::vector<double> later(const std::vector<double>& x, double steps) {
   return moved;
 }
 
-/// What a first-order lag is taken off of, `time_constant` > 0: x + time_constant x'. By a negative one x follows with
-/// that lag, exactly where it is linear between grid points. After a hole it starts anew.
+/// Undoes a first-order lag: x + T x' for a time constant T > 0. For T < 0 it is x through a
+/// lag of -T, exact where x is linear between grid points; the lag restarts after a gap.
 std::vector<double> before_lag(const std::vector<double>& x, double time_constant, double step) {
   std::vector<double> y = x;
   if (time_constant > 0.0) {

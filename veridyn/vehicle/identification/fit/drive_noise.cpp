@@ -7,7 +7,7 @@
 
 namespace veridyn::vehicle {
 
-DriveNoise drive_noise(const LinearDrive& drive, const SteeringNoise& steering, const Eigen::VectorXd& output_sigma) {
+DriveNoise drive_noise(const LinearDrive& drive, const SteeringNoise& steering) {
   constexpr Eigen::Index kNoise = 2;
   constexpr double kButterworth = 0.5 * kPi / std::numbers::sqrt2;  // noise bandwidth over the corner frequency
   const double corner = 2.0 * kPi * 0.5 / steering.step * steering.band_share / kButterworth;
@@ -26,7 +26,6 @@ DriveNoise drive_noise(const LinearDrive& drive, const SteeringNoise& steering, 
   out.C = Eigen::MatrixXd::Zero(drive.C.rows(), n);
   out.C.leftCols(states) = drive.C;
   out.C.col(states) = drive.D;
-  out.R = output_sigma.cwiseAbs2().asDiagonal();
   return out;
 }
 

@@ -17,15 +17,13 @@ struct SteeringNoise {
   double step = 0.01;       ///< [s]
 };
 
-/// By which noise of the steering and of the sensors comes to the outputs: x_next = F x + G w, y = C x + e with white w
-/// of variance one and covariance R of e. The noise of the steering that is left is white noise through two poles of
-/// its bandwidth (Butterworth), whose states follow those of the vehicle.
+/// By which noise of the steering comes to the outputs: x_next = F x + G w, y = C x with white w of variance one. The
+/// noise of the steering that is left is white noise through two poles of its bandwidth (Butterworth), whose states
+/// follow those of the vehicle.
 struct DriveNoise {
-  Eigen::MatrixXd F, C, R;
+  Eigen::MatrixXd F, C;
   Eigen::VectorXd G;
 };
-/// `output_sigma`: of each output's own white noise.
-[[nodiscard]] DriveNoise drive_noise(const LinearDrive& drive, const SteeringNoise& steering,
-                                     const Eigen::VectorXd& output_sigma);
+[[nodiscard]] DriveNoise drive_noise(const LinearDrive& drive, const SteeringNoise& steering);
 
 }  // namespace veridyn::vehicle

@@ -88,9 +88,7 @@ DriveParametricModel::DriveParametricModel(const DriveSignals& signals, std::spa
   const auto compare = [&](DriveSignal signal) {
     if (!signals[signal].available()) return;
     outputs_.push_back({std::string(kDriveSignalNames[signal]), std::string(kDriveSignalUnits[signal])});
-    compared_.push_back({.signal = signal,
-                         .value = smoothed(signals[signal].value, grid_.rate_Hz(), smoothing_Hz_),
-                         .sigma = signals[signal].sigma});
+    compared_.push_back({.signal = signal, .value = smoothed(signals[signal].value, grid_.rate_Hz(), smoothing_Hz_)});
   };
   for (const DriveSignal s : {DriveSignal::kYawRate, DriveSignal::kAccelY, DriveSignal::kLateralVelocity}) compare(s);
   if (has_roll(options_.structure))
@@ -399,21 +397,13 @@ LinearDrive DriveParametricModel::linearized(double u, const Eigen::VectorXd& th
   });
 }
 
-DriveNoise DriveParametricModel::noise_at(double u, const Eigen::VectorXd& theta) const {
-  Eigen::VectorXd sigma(signed_index(compared_.size()));
-  for (Eigen::Index j = 0; j < sigma.size(); ++j) sigma(j) = compared_[at(j)].sigma;
-  return drive_noise(
-      linearized(u, theta),
-      {.sigma = steer_error_share_ > 0.0 ? steer_sigma_ : 0.0, .band_share = steer_error_share_, .step = grid_.step},
-      sigma);
-}
-
 DriveParametricModel::SteeringEffect DriveParametricModel::steering_noise_effect(const Eigen::VectorXd& theta) const {
   const auto outputs = signed_index(compared_.size());
   SteeringEffect out{Eigen::VectorXd::Zero(outputs), Eigen::VectorXd::Ones(outputs), Eigen::VectorXd::Zero(outputs)};
   if (!(steer_sigma_ > 0.0) || !(steer_error_share_ > 0.0) || segments_.empty()) return out;
   const SpeedRange range = speeds();
-  const DriveNoise noise = noise_at(0.5 * (range.slowest + range.fastest), theta);
+  const DriveNoise noise = drive_noise(linearized(0.5 * (range.slowest + range.fastest), theta),
+                                       {.sigma = steer_sigma_, .band_share = steer_error_share_, .step = grid_.step});
   if (!(numerics::general_eigenvalues(noise.F).cwiseAbs().maxCoeff() < 1.0)) return out;
   const Eigen::MatrixXd P = numerics::discrete_lyapunov(noise.F, noise.G * noise.G.transpose()).X;
   const Eigen::VectorXd variance = (noise.C * P * noise.C.transpose()).diagonal().cwiseMax(0.0);

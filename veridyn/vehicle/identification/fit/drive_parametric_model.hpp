@@ -95,8 +95,8 @@ class DriveParametricModel
     Eigen::VectorXd sigma, memory;
     Eigen::VectorXd autocovariance;  ///< its mean over the next estimation::kColourLags samples
   };
-  /// Of what is left of that noise at `theta`, at the mean speed of the segments; 0 and 1 without noise, or where the
-  /// vehicle is unstable there.
+  /// Of what is left of that noise at `theta`, midway between slowest and fastest of the segments; 0 and 1 without
+  /// noise, or where the vehicle is unstable there.
   [[nodiscard]] SteeringEffect steering_noise_effect(const Eigen::VectorXd& theta) const;
 
   /// Fills `output`; false where the motion diverged. Compiled for double and Jets.
@@ -119,7 +119,6 @@ class DriveParametricModel
   struct Compared {
     DriveSignal signal = DriveSignal::kYawRate;
     std::vector<double> value;
-    double sigma = 0.0;
   };
 
   /// Over samples [begin, end) of the grid.
@@ -147,7 +146,6 @@ class DriveParametricModel
                      Outputs<Scalar>& output) const;
   /// About straight driving at speed u.
   [[nodiscard]] LinearDrive linearized(double u, const Eigen::VectorXd& theta) const;
-  [[nodiscard]] DriveNoise noise_at(double u, const Eigen::VectorXd& theta) const;
   /// Whether loads of the axles change.
   [[nodiscard]] bool moves_loads() const;
   struct SpeedRange {
