@@ -11,8 +11,8 @@ namespace veridyn::muscle {
 /// How far recorded EMG envelopes are from the excitations that they stand for: an error of each signal in
 /// `kEmgErrorParts` independent parts. The quickest changes as fast as the envelope's bandwidth lets it (few motor
 /// units under an electrode), the slowest over a second and more (electrodes that move over the muscle, crosstalk,
-/// fatigue). Each has the standard deviation hypot(relative e, absolute) before a recording says how large it is: as one
-/// does not know at which pace the stated error changes, it is allowed for at each.
+/// fatigue). Each has the standard deviation hypot(relative e, absolute) before a recording says how large it is: as
+/// one does not know at which pace the stated error changes, it is allowed for at each.
 struct EmgError {
   double relative = kEmgBudget[0].sigma;
   double absolute = 0.0;      ///< of full scale
