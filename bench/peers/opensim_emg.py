@@ -16,6 +16,7 @@ import tempfile
 import numpy
 import opensim
 
+from intervals import IntervalCount
 from opensim_model import OpenSimModel, prescribe
 from program import run_study, shared_file, write_csv
 
@@ -165,40 +166,21 @@ def identified(case, seed, folder):
 
 
 @dataclasses.dataclass
-class Count:
-    """What became of intervals of 95 %."""
+class EmgCount(IntervalCount):
+    """And what the moments leave."""
 
-    held: int = 0
-    wrong: int = 0  # identified, more than 10 % off and outside
-    errors: list = dataclasses.field(default_factory=list)  # relative
-    widths: list = dataclasses.field(default_factory=list)  # half of them, relative
-    grades: list = dataclasses.field(default_factory=list)
     nrmse: list = dataclasses.field(default_factory=list)
 
     def add(self, estimate, truth):
-        self.grades.append(estimate["grades"]["parameters"]["grade"])
+        super().add(estimate, truth)
         self.nrmse.append(estimate["fit"]["nrmse_trained"])
-        for p in estimate["parameters"]:
-            true = truth.get(p["name"], 0.0)
-            if true == 0.0:
-                continue
-            off, half = p["value"] - true, 0.5 * (p["high95"] - p["low95"])
-            held = p["low95"] <= true <= p["high95"]
-            self.held += held
-            self.wrong += p["status"] == "identified" and not held and abs(off) > 0.1 * true
-            self.errors.append(off / true)
-            self.widths.append(half / true)
 
     def __str__(self):
-        text = f"{self.held} of {len(self.errors)} intervals hold, "
-        text += f"median error {numpy.median(numpy.abs(self.errors)):.1%} (mean {numpy.mean(self.errors):+.1%}), "
-        text += f"half width {numpy.median(self.widths):.1%}, {self.wrong} wrong"
-        grades = {grade: self.grades.count(grade) for grade in sorted(set(self.grades))}
-        return text + f", NRMSE {numpy.mean(self.nrmse):.1%}, parameters {grades}"
+        return super().__str__() + f", NRMSE {numpy.mean(self.nrmse):.1%}"
 
 
 if __name__ == "__main__":
-    counts = Count()
+    counts = EmgCount()
     for number in map(int, sys.argv[2:]):
         with tempfile.TemporaryDirectory() as name:
             estimate, truth = identified(CASES[sys.argv[1]], number, pathlib.Path(name))

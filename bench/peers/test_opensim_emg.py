@@ -4,13 +4,13 @@ The default study, and six tasks of three seconds. `python opensim_emg.py errors
 
 import pytest
 
-from opensim_emg import CASES, Count, identified
+from opensim_emg import CASES, EmgCount, identified
 
 pytestmark = pytest.mark.peer("opensim")
 
 
 def counted(name, seeds, folder):
-    count, estimates = Count(), []
+    count, estimates = EmgCount(), []
     for seed in seeds:
         place = folder / str(seed)
         place.mkdir()

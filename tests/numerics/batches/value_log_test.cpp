@@ -106,6 +106,14 @@ TEST_F(ValueLogTest, ThreadsWriteSideBySide) {
   EXPECT_THAT(values_, ElementsAre(20.0, 20.0, 20.0, 20.0, 20.0, 20.0));
 }
 
+TEST_F(ValueLogTest, IsKeptToTheRunThatHasItOpen) {
+  {
+    const ValueLog log(folder_);
+    EXPECT_THROW(ValueLog second(folder_), InputError);
+  }
+  EXPECT_NO_THROW(ValueLog second(folder_));
+}
+
 TEST_F(ValueLogTest, NoticesAFileThatChangesWhileItRuns) {
   ValueLog log(folder_);
   log.append(9, std::vector{4.5});

@@ -130,6 +130,7 @@ VehicleStudy rolling_drive(const RollingCar& car, CarTyre tyre, std::size_t driv
       seed, p.mass, p.a, p.b);
   DriveSensorSet sensors = reference_drive_sensors();
   sensors[DriveSensorKind::kPosition].enabled = true;
+  for (DriveSensor& sensor : sensors.sensors) sensor.sigma *= options.noise;
   Progress silent;
   VehicleStudy study =
       read_study(Study::parse(text, "rolling_car.toml"), record_drive(trajectory, sensors, seed), silent);

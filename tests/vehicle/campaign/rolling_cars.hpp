@@ -36,6 +36,7 @@ struct RollingDriveOptions {
   double change_s = 1e9;
   double grip = 1.0;
   double livelier_s = 1e9;
+  double noise = 1.0;  ///< over that of the reference sensors
 };
 
 /// A drive with reference sensors at 15, 20 or 25 m/s, gentle (0.05 to 0.8 Hz, 0.8 m/s^2 rms) or livelier (0.1 to

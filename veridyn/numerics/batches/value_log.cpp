@@ -42,11 +42,16 @@ std::runtime_error not_written(const std::filesystem::path& path) {
   return std::runtime_error(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
 }
 
+FileLock locked(const std::filesystem::path& folder, const std::filesystem::path& path) {
+  make_folder(folder);
+  return FileLock(path);
+}
+
 }  // namespace
 
-ValueLog::ValueLog(std::filesystem::path folder) : folder_(std::move(folder)), path_(folder_ / "evaluations.log") {
-  make_folder(folder_);
-  const std::string content = std::filesystem::exists(path_) ? read_file(path_) : std::string();
+ValueLog::ValueLog(std::filesystem::path folder)
+    : folder_(std::move(folder)), path_(folder_ / "evaluations.log"), lock_(locked(folder_, path_)) {
+  const std::string content = read_file(path_);
   if (content.size() < kLogFormat.size() && kLogFormat.starts_with(content)) {
     std::ofstream file(path_, std::ios::binary | std::ios::trunc);
     file << kLogFormat << std::flush;

@@ -10,6 +10,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "veridyn/core/file_lock.hpp"
+
 namespace veridyn::numerics {
 
 /// Values of a costly function, kept in a file as they are computed, so that a run which follows the same path as an
@@ -20,12 +22,12 @@ namespace veridyn::numerics {
 ///
 /// The file, little-endian: "veridyn values 1\n", then records of key and number of values (64 bits each), the values,
 /// and a checksum (`Fingerprint`) of these. A record counts once it is whole: what a killed program leaves at the end
-/// is dropped. Values stay in the file, not in memory. One process at a time may have it open.
+/// is dropped. Values stay in the file, not in memory. It is kept to whoever has it open.
 class ValueLog {
  public:
   /// Opens or begins the log in a folder.
-  /// @throws InputError where a file is no such log, or is damaged before its end; std::runtime_error where it cannot
-  /// be written.
+  /// @throws InputError where a file is no such log, is damaged before its end, or is in use by another run;
+  /// std::runtime_error where it cannot be written.
   explicit ValueLog(std::filesystem::path folder);
   ValueLog(const ValueLog&) = delete;
   ValueLog& operator=(const ValueLog&) = delete;
@@ -50,6 +52,7 @@ class ValueLog {
   [[nodiscard]] std::string text_of(std::size_t offset, std::size_t size) const;
 
   std::filesystem::path folder_, path_;
+  FileLock lock_;
   std::size_t size_ = 0;  ///< of the whole records [bytes]
   std::size_t loaded_ = 0;
   mutable std::mutex mutex_;

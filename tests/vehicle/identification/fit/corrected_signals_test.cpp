@@ -31,6 +31,7 @@ TEST(CorrectedSignals, AreInTheTimeOfTheWheelsAndAtTheAccelerometersPlace) {
   theta(static_cast<Eigen::Index>(DriveUnknown::kSteerDelay)) = -0.025;
   theta(static_cast<Eigen::Index>(DriveUnknown::kAccelYDelay)) = 0.013;
   theta(static_cast<Eigen::Index>(DriveUnknown::kAccelPlace)) = 0.4;
+  theta(static_cast<Eigen::Index>(DriveUnknown::kAccelHeight)) = -0.3;
   const DriveSignals corrected = corrected_signals(recorded, theta);
   const std::vector<double> in_time = wave(0.0);
   for (std::size_t k = 10; k < 490; ++k) {
@@ -39,7 +40,7 @@ TEST(CorrectedSignals, AreInTheTimeOfTheWheelsAndAtTheAccelerometersPlace) {
     EXPECT_EQ(corrected[DriveSignal::kYawRate].value[k], in_time[k]);
   }
   EXPECT_DOUBLE_EQ(corrected.accel_position[0], 0.6);
-  EXPECT_EQ(corrected.accel_position[2], 0.1);
+  EXPECT_DOUBLE_EQ(corrected.accel_position[2], -0.2);
 }
 
 // A shift brings a gap, or what lies beyond the recording, to where something was recorded.

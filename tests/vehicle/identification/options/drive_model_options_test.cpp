@@ -118,17 +118,18 @@ TEST(DriveModelOptions, FreeTheUnknownsOfTheStructureAndNoOthers) {
   };
   EXPECT_EQ(freed(DriveStructure::kScaledAccel), "accel_y_scale ");
   EXPECT_EQ(freed(DriveStructure::kRoll),
-            "roll_gradient roll_arm roll_frequency roll_damping roll_steer_f roll_steer_r ");
-  EXPECT_EQ(freed(DriveStructure::kRelaxation),
-            "roll_gradient roll_arm relaxation_length roll_frequency roll_damping roll_steer_f roll_steer_r ");
+            "roll_gradient roll_arm roll_frequency roll_damping roll_steer_f roll_steer_r accel_height ");
+  EXPECT_EQ(
+      freed(DriveStructure::kRelaxation),
+      "roll_gradient roll_arm relaxation_length roll_frequency roll_damping roll_steer_f roll_steer_r accel_height ");
   EXPECT_EQ(
       freed(DriveStructure::kSaturation),
       "mu roll_gradient roll_arm relaxation_length load_transfer load_transfer_balance roll_frequency roll_damping "
-      "roll_steer_f roll_steer_r ");
+      "roll_steer_f roll_steer_r accel_height ");
   EXPECT_EQ(with_structure({}, DriveStructure::kSaturation).tyre, kDriveTyre<FialaTyre>);
   EXPECT_EQ(freed(DriveStructure::kMagicFormula),
             "mu C E roll_gradient roll_arm relaxation_length load_transfer_loss load_transfer_balance "
-            "roll_frequency roll_damping roll_steer_f roll_steer_r ");
+            "roll_frequency roll_damping roll_steer_f roll_steer_r accel_height ");
   EXPECT_EQ(with_structure({}, DriveStructure::kMagicFormula).tyre, kDriveTyre<SimpleMagicFormulaTyre>);
 }
 
@@ -147,7 +148,8 @@ TEST(DriveModelOptions, HoldTheUnknownsThatASimplerStructureDoesNotHave) {
 
 /// Of the budget: what no structure decides on.
 bool is_free_by_default(DriveUnknown u) {
-  return is_in_budget(u) && u != DriveUnknown::kRollSteerF && u != DriveUnknown::kRollSteerR;
+  return is_in_budget(u) && u != DriveUnknown::kRollSteerF && u != DriveUnknown::kRollSteerR &&
+         u != DriveUnknown::kAccelHeight;
 }
 
 // Errors of sensors are unknowns whatever the study estimates, unless it knows them exactly.

@@ -41,6 +41,7 @@ DriveSignals corrected_signals(DriveSignals signals, const Eigen::VectorXd& thet
   shift(signals[DriveSignal::kYawRate].value, found(DriveUnknown::kYawRateDelay), step);
   shift(signals[DriveSignal::kAccelY].value, found(DriveUnknown::kAccelYDelay), step);
   signals.accel_position[0] += found(DriveUnknown::kAccelPlace);
+  signals.accel_position[2] += found(DriveUnknown::kAccelHeight);
   return signals;
 }
 

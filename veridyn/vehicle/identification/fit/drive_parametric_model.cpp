@@ -138,7 +138,7 @@ Scalar DriveParametricModel::true_output(DriveSignal signal, const Eigen::Matrix
       const Scalar x = given_x + theta(static_cast<Eigen::Index>(DriveUnknown::kAccelPlace));
       Scalar shown = rates.lateral_acceleration + x * rates.derivative(1) - y * state(1) * state(1);
       if constexpr (kStates > 2) {
-        shown -= z * rates.derivative(3);
+        shown -= (z + theta(static_cast<Eigen::Index>(DriveUnknown::kAccelHeight))) * rates.derivative(3);
         if (!gravity_removed_ || removed_gradient_ != 0.0)
           shown = (shown + options_.gravity * state(2)) / (1.0 + options_.gravity * removed_gradient_);
       }

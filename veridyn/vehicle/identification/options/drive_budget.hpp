@@ -26,6 +26,8 @@ inline constexpr std::array kDriveBudget{
                "ours: one sample at 100 Hz between two filters of one instrument"},
     DrivePrior{DriveUnknown::kAccelPlace, 0.3, "how far ahead of its given place the accelerometer is",
                "ours: between the front seats or on the tunnel, where the centre of gravity is not known better"},
+    DrivePrior{DriveUnknown::kAccelHeight, 0.2, "how far above its given place the accelerometer is",
+               "ours: from the floor to the dashboard, where the height of the centre of gravity is not known better"},
     DrivePrior{DriveUnknown::kTrail, 0.015, "how far behind the middle of the contact side forces act",
                "pneumatic trails of passenger cars' tyres are 0 to 0.04 m (Pacejka 2006, chapter 1)"},
     DrivePrior{DriveUnknown::kRollSteerF, 0.05, "slip angle of the front tyres per roll",

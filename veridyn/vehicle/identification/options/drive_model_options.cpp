@@ -17,11 +17,11 @@
 namespace veridyn::vehicle {
 namespace {
 
-constexpr std::array kRolls{DriveUnknown::kRollGradient,     DriveUnknown::kRollFrequency,
-                            DriveUnknown::kRollDamping,      DriveUnknown::kRollArm,
-                            DriveUnknown::kRelaxationLength, DriveUnknown::kLoadTransfer,
-                            DriveUnknown::kLoadTransferLoss, DriveUnknown::kLoadTransferBalance,
-                            DriveUnknown::kRollSteerF,       DriveUnknown::kRollSteerR};
+constexpr std::array kRolls{
+    DriveUnknown::kRollGradient,     DriveUnknown::kRollFrequency,       DriveUnknown::kRollDamping,
+    DriveUnknown::kRollArm,          DriveUnknown::kRelaxationLength,    DriveUnknown::kLoadTransfer,
+    DriveUnknown::kLoadTransferLoss, DriveUnknown::kLoadTransferBalance, DriveUnknown::kRollSteerF,
+    DriveUnknown::kRollSteerR,       DriveUnknown::kAccelHeight};
 constexpr std::array kOfCourse{DriveUnknown::kSideslipBias, DriveUnknown::kCourseDelay};
 constexpr std::array kOfEffects{DriveUnknown::kDownforceF, DriveUnknown::kDownforceR, DriveUnknown::kLoadSensitivity,
                                 DriveUnknown::kFrontForceShare};
@@ -116,7 +116,7 @@ std::pair<double, double> bounds_of(DriveUnknown unknown, double start, double w
     case DriveUnknown::kRollDamping:
       return {0.05, 1.2};
     case DriveUnknown::kRollArm:
-      return {0.0, wheelbase};
+      return {-wheelbase, wheelbase};
     case DriveUnknown::kLoadTransfer:
       return {0.0, 2.0};
     case DriveUnknown::kLoadTransferLoss:

@@ -49,10 +49,11 @@ enum class DriveUnknown : std::size_t {
   kYawRateDelay,  ///< how late the yaw rate is recorded [s]
   kAccelYDelay,
   kCourseDelay,  ///< how late the course is, of which a lateral velocity is made [s]
-  kAccelPlace    ///< how far ahead of its given place the accelerometer is [m]
+  kAccelPlace,   ///< how far ahead of its given place the accelerometer is [m]
+  kAccelHeight   ///< how far above it [m]
 };
 /// How many unknowns there are.
-inline constexpr std::size_t kDriveUnknowns = 35;
+inline constexpr std::size_t kDriveUnknowns = 36;
 /// All of them, in order.
 inline constexpr auto kAllDriveUnknowns = enumerators<DriveUnknown, kDriveUnknowns>();
 /// What the model of every structure has of the vehicle.
@@ -98,12 +99,13 @@ inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownNames{"C_f",
                                                                       "yaw_rate_delay",
                                                                       "accel_y_delay",
                                                                       "course_delay",
-                                                                      "accel_place"};
+                                                                      "accel_place",
+                                                                      "accel_height"};
 /// Their units, in the same order.
 inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownUnits{
     "N/rad", "N/rad",   "kg m^2",  "m",   "1",     "1",     "1", "rad s^2/m", "m", "m", "1",   "1",
     "1",     "s^2/m^2", "s^2/m^2", "1",   "1",     "rad/s", "1", "1",         "1", "m", "rad", "1",
-    "rad/s", "m/s^2",   "1",       "rad", "rad/s", "rad",   "s", "s",         "s", "s", "m"};
+    "rad/s", "m/s^2",   "1",       "rad", "rad/s", "rad",   "s", "s",         "s", "s", "m",   "m"};
 static_assert(!kDriveUnknownNames.back().empty() && !kDriveUnknownUnits.back().empty(), "one is missing");
 /// Whether a parameter is one of these unknowns.
 [[nodiscard]] constexpr bool is_one_of(std::string_view parameter, std::span<const DriveUnknown> unknowns) {
