@@ -7,7 +7,7 @@ JOBS   ?= $(shell nproc)
 SHELL  := /bin/bash
 space  := $(subst ,, )
 
-.PHONY: help setup build demo test long docs pictures format format-check tidy asan asan-readers tsan bench peers bench-peers fuzz soak nightly gcc install clean
+.PHONY: help setup build demo test long campaigns docs pictures format format-check tidy asan asan-readers tsan bench peers bench-peers fuzz soak nightly gcc install clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1|/' | column -t -s '|'
@@ -24,14 +24,22 @@ demo: build ## a complete run on a built-in aircraft; report in out/demo
 
 # So many tests that wait (tests/waiting_tests.txt) run next to JOBS tests that compute.
 WAITING ?= 2
+# Labels of what does not run in `make test`.
+LATER := soak|long|campaign
 
 test: setup format-check ## build and run the test suite
 	$(build_with_tests)
-	$(call run_tests,$(TESTED)) -LE 'soak|long'
+	$(call run_tests,$(TESTED)) -LE '$(LATER)'
 
 long: setup ## tests of accuracy and of coverage over many recordings (label long)
 	$(build_with_tests)
 	$(call run_tests,$(TESTED)) -L long
+
+CAMPAIGNS ?= .
+
+campaigns: setup ## those that take up to two minutes each (label campaign); CAMPAIGNS="vehicle" for those of one module
+	$(build_with_tests)
+	$(call run_tests,$(TESTED)) -L campaign -L '^($(subst $(space),|,$(CAMPAIGNS)))'
 
 define build_with_tests
 	cmake --preset test --log-level=WARNING
@@ -76,12 +84,12 @@ ASAN_RUNS := example_several_flights|example_vehicle_identify_sweep|example_musc
 asan: setup ## tests of every module under the address and undefined-behaviour sanitizers; ASAN_MODULES="io" for one
 	cmake --preset asan --log-level=WARNING
 	cmake --build build/asan -j $(JOBS) --target $(ASAN_MODULES:%=veridyn_%_tests)
-	$(call run_tests,build/asan) -LE 'soak|long' -L '^($(subst $(space),|,$(ASAN_MODULES)))$$'
+	$(call run_tests,build/asan) -LE '$(LATER)' -L '^($(subst $(space),|,$(ASAN_MODULES)))$$'
 
 asan-readers: setup ## the same for what reads files and packets of others, and one full run of each domain
 	cmake --preset asan --log-level=WARNING
 	cmake --build build/asan -j $(JOBS) --target $(READERS:%=veridyn_%_tests) veridyn
-	$(call run_tests,build/asan) -LE 'soak|long' -L '^($(subst $(space),|,$(READERS)))$$'
+	$(call run_tests,build/asan) -LE '$(LATER)' -L '^($(subst $(space),|,$(READERS)))$$'
 	$(call run_tests,build/asan) -R '^($(ASAN_RUNS))$$'
 
 # What runs in threads beside each other, by module. The sanitizer's shadow memory wants addresses that are not shuffled.
@@ -130,6 +138,7 @@ nightly: setup ## all that is too long for .ci/run: every test, module and check
 	$(MAKE) test
 	$(MAKE) peers
 	$(MAKE) long
+	$(MAKE) campaigns
 	$(MAKE) tidy
 	$(MAKE) asan
 	$(MAKE) tsan

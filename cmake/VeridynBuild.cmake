@@ -197,7 +197,8 @@ endfunction()
 # veridyn_test_binary(NAME SOURCES ... [DEPENDS ...])
 # veridyn_NAME_tests; each suite of it is a test of CTest, NAME.Suite, under the label NAME (VeridynSuites.cmake). Tests of their
 # own are cases of suites named *Soak*, long-running campaigns under the label `soak`, which `make soak` runs; those that
-# tests/long_tests.txt names, label `NAME.long`, which `make long` runs and the sanitizers do not; those that wait
+# tests/long_tests.txt and tests/campaign_tests.txt name, labels `NAME.long` and `NAME.campaign`, which `make long` and `make
+# campaigns` run and the sanitizers do not; those that wait
 # (tests/waiting_tests.txt), beside what takes one of the cores that `make test` distributes; and those that nothing runs beside
 # (tests/lone_tests.txt).
 function(veridyn_test_binary name)
@@ -207,28 +208,26 @@ function(veridyn_test_binary name)
   target_link_libraries(${target} PRIVATE ${ARG_DEPENDS} veridyn_test_build veridyn_test_main)
   target_precompile_headers(${target} REUSE_FROM veridyn_test_headers)
   veridyn_compile_together(${target})
-  set(lists ${PROJECT_SOURCE_DIR}/tests/long_tests.txt ${PROJECT_SOURCE_DIR}/tests/waiting_tests.txt
-            ${PROJECT_SOURCE_DIR}/tests/lone_tests.txt)
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${lists})
-  file(STRINGS ${PROJECT_SOURCE_DIR}/tests/long_tests.txt long REGEX "^[^#]")
-  list(TRANSFORM long REPLACE "(.+)" "*\\1*")
-  list(JOIN long ":" long)
-  foreach(list waiting lone)
-    file(STRINGS ${PROJECT_SOURCE_DIR}/tests/${list}_tests.txt ${list} REGEX "^[^#]")
+  foreach(list long campaign waiting lone)
+    set(file ${PROJECT_SOURCE_DIR}/tests/${list}_tests.txt)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+    file(STRINGS ${file} ${list} REGEX "^[^#]")
     list(JOIN ${list} "|" ${list}_names)
     list(TRANSFORM ${list} REPLACE "(.+)" "*\\1*")
     list(JOIN ${list} ":" ${list})
   endforeach()
   set(alone ${waiting}:${lone})
-  gtest_discover_tests(${target} TEST_FILTER ${alone}-*Soak*:${long} TEST_LIST ${target}_alone DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${name} TIMEOUT 600)
-  gtest_discover_tests(${target} TEST_FILTER ${long}-*Soak* TEST_LIST ${target}_long DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${name}.long TIMEOUT 600)
+  set(later *Soak*:${long}:${campaign})
+  gtest_discover_tests(${target} TEST_FILTER ${alone}-${later} TEST_LIST ${target}_alone DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${name} TIMEOUT 600)
+  gtest_discover_tests(${target} TEST_FILTER ${long}-*Soak*:${campaign} TEST_LIST ${target}_long DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${name}.long TIMEOUT 600)
+  gtest_discover_tests(${target} TEST_FILTER ${campaign}-*Soak* TEST_LIST ${target}_campaign DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${name}.campaign TIMEOUT 600)
   gtest_discover_tests(${target} TEST_FILTER *Soak* DISCOVERY_TIMEOUT 60 PROPERTIES LABELS soak ENVIRONMENT VERIDYN_SOAK=1 TIMEOUT 7200)
 
   # What CTest reads after the tests of this folder.
-  set(left_out *Soak*:${long}:${alone})
+  set(left_out ${later}:${alone})
   set(file ${CMAKE_CURRENT_BINARY_DIR}/${target}_resources.cmake)
   file(CONFIGURE OUTPUT ${file} @ONLY CONTENT [[
-foreach(test IN LISTS @target@_alone @target@_long)
+foreach(test IN LISTS @target@_alone @target@_long @target@_campaign)
   if(test MATCHES "@lone_names@")
     set_tests_properties(${test} PROPERTIES RUN_SERIAL TRUE)
   elseif(test MATCHES "@waiting_names@")

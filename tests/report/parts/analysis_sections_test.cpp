@@ -76,6 +76,19 @@ TEST(ParametersSection, ShowsTheTruthOnlyWhereItIsKnown) {
   EXPECT_EQ(tables[0].rows[0].cells.size(), tables[0].columns.size());
 }
 
+// Shares of the variance: 3^2, 4^2 and 1^2 of 26, of which the last is below a twentieth.
+TEST(ParametersSection, SaysWhatAnIntervalConsistsOf) {
+  Analysis analysis = analysis_with(GroupVerdict::kIdentified);
+  analysis.estimate.interval_parts["C_f"] = {
+      {"by_noise", "noise", 3.0}, {"by_delays", "delays", 4.0}, {"by_body", "mass", 1.0}};
+  const auto tables = blocks<Table>(parameters_section(analysis, ""));
+  ASSERT_EQ(tables.size(), 1U);
+  EXPECT_EQ(tables[0].columns.back().name, "interval by");
+  EXPECT_EQ(tables[0].rows[0].cells.back().text, "delays 62 %, noise 35 %");
+  EXPECT_EQ(tables[0].rows[1].cells.back().text, "");
+  EXPECT_EQ(tables[0].rows[1].cells.size(), tables[0].columns.size());
+}
+
 TEST(ParametersSection, KeepsRejectedValuesOutOfTheTable) {
   const Analysis rejected = analysis_with(GroupVerdict::kRejected);
   EXPECT_TRUE(blocks<Table>(parameters_section(rejected, "")).empty());

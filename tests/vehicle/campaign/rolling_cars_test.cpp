@@ -79,9 +79,10 @@ TEST(RollingCars, AGentleDriveSaysWhatItLeavesOpenOfTheStructure) {
   EXPECT_LE(I_z->low95, study.truth.at("I_z"));
   EXPECT_GE(I_z->high95, study.truth.at("I_z"));
   const estimation::Estimate estimate = make_vehicle_estimate(found, "car");
-  const double doubt = estimate.fit.at("I_z.structure_doubt");
-  EXPECT_GT(doubt, 0.0);
-  EXPECT_GT(I_z->sigma, doubt);
+  const estimation::IntervalPart& doubt = estimate.interval_parts.at("I_z").back();
+  EXPECT_EQ(doubt.key, "structure_doubt");
+  EXPECT_GT(doubt.sigma, 0.0);
+  EXPECT_GT(I_z->sigma, doubt.sigma);
   const auto row = std::ranges::find(found.checks, estimation::Check::kStructureDoubt, &estimation::Evidence::check);
   ASSERT_NE(row, found.checks.end());
 }

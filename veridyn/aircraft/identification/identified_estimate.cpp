@@ -111,11 +111,10 @@ estimation::Estimate make_estimate(const Subject& subject, std::span<const Coeff
     at += chosen.theta.size();
     const IntervalParts& parts = result.interval_parts;
     for (Eigen::Index i = 0; i < parts.noise.size(); ++i) {
-      const std::string& parameter = chosen.parameters[i].name;
-      estimate.fit[parameter + ".by_noise"] = parts.noise(i);
-      estimate.fit[parameter + ".by_air_data"] = parts.air_data(i);
-      estimate.fit[parameter + ".by_delays"] = parts.delays(i);
-      estimate.fit[parameter + ".by_body"] = parts.body(i);
+      estimate.interval_parts[chosen.parameters[i].name] = {{"by_noise", "noise", parts.noise(i)},
+                                                            {"by_air_data", "air data", parts.air_data(i)},
+                                                            {"by_delays", "delays", parts.delays(i)},
+                                                            {"by_body", "mass and geometry", parts.body(i)}};
     }
     estimate.fit[name + ".r2"] = result.identification_fit.r2;
     estimate.fit[name + ".residual_sd"] = chosen.residual_sd;

@@ -27,6 +27,13 @@ struct ValidationMeasure {
   std::string unit = "1";
 };
 
+/// A part of what a parameter's standard deviation is made of.
+struct IntervalPart {
+  std::string_view key;    ///< of `fit` in estimate.json, after the parameter and a point: "by_noise"
+  std::string_view words;  ///< "noise"
+  double sigma = 0.0;      ///< in the parameter's unit
+};
+
 /// One of several recordings that an estimate was made from, or tried on.
 struct RecordingUse {
   std::string name;                                       ///< of its file
@@ -66,6 +73,7 @@ struct Estimate {
   Eigen::MatrixXd covariance;                 ///< in parameter order; zero between separately estimated groups
   std::vector<MethodEstimate> other_methods;  ///< alongside `parameters`; `other_methods` of estimate.json
   std::map<std::string, double> fit;
+  std::map<std::string, std::vector<IntervalPart>> interval_parts = {};  ///< by parameter; written into `fit`
   std::map<std::string, ValidationMeasure> validation;
   std::vector<RecordingUse> recordings = {};  ///< where there are several; `validation` is of all of them
   std::string verdict;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "veridyn/core/constants.hpp"
@@ -332,7 +333,10 @@ std::string to_json(const Estimate& estimate) {
     root["covariance"].push_back(std::move(row));
   }
   root["fit"] = ordered_json::object();
-  for (const auto& [name, value] : estimate.fit) root["fit"][name] = number(value);
+  std::map<std::string, double> fit = estimate.fit;
+  for (const auto& [parameter, parts] : estimate.interval_parts)
+    for (const estimation::IntervalPart& part : parts) fit[fmt::format("{}.{}", parameter, part.key)] = part.sigma;
+  for (const auto& [name, value] : fit) root["fit"][name] = number(value);
   root["validation"] = validation_of(estimate.validation);
   for (const estimation::RecordingUse& recording : estimate.recordings)
     root["recordings"].push_back(

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -26,6 +29,21 @@ using estimation::ParameterGroup;
 
 bool has_values(const ParameterGroup& group) {
   return !group.parameters.empty() && (estimation::usable(group.verdict) || group.verdict == GroupVerdict::kNotExcited);
+}
+
+/// "noise 62 %, delays 31 %": shares of the variance, the largest first, of what has at least a twentieth.
+std::string shares_of(std::span<const estimation::IntervalPart> parts) {
+  constexpr double kSmallest = 0.05;
+  std::vector<estimation::IntervalPart> sorted(parts.begin(), parts.end());
+  std::ranges::sort(sorted, std::ranges::greater(), &estimation::IntervalPart::sigma);
+  double variance = 0.0;
+  for (const estimation::IntervalPart& part : sorted) variance += part.sigma * part.sigma;
+  std::string words;
+  for (const estimation::IntervalPart& part : sorted) {
+    const double share = part.sigma * part.sigma / variance;
+    if (share >= kSmallest) words += fmt::format("{}{} {:.0f} %", words.empty() ? "" : ", ", part.words, 100.0 * share);
+  }
+  return words;
 }
 
 /// Parameters that at least two methods estimated; one method alone compares with nothing.
@@ -107,6 +125,8 @@ Section parameters_section(const Analysis& analysis, std::string caption) {
                   "whose interval includes zero is marked insignificant, not set to zero. " +
                   std::move(caption),
               .columns = parameter_columns(!analysis.truth.empty())};
+  const auto& parts = analysis.estimate.interval_parts;
+  if (!parts.empty()) table.columns.push_back({.name = "interval by", .align = Align::kLeft});
   for (const ParameterGroup& group : analysis.groups) {
     if (!has_values(group)) continue;
     for (const Parameter& p : group.parameters) {
@@ -114,6 +134,11 @@ Section parameters_section(const Analysis& analysis, std::string caption) {
       Row row = parameter_row(p, unit.value, unit.unit);
       if (!analysis.truth.empty())
         row.cells.push_back(measured_cell(analysis.true_value(p.name) * unit.value, p.sigma * unit.value));
+      if (const auto found = parts.find(p.name); found != parts.end()) {
+        row.cells.push_back(text_cell(shares_of(found->second)));
+      } else if (!parts.empty()) {
+        row.cells.push_back(text_cell(""));
+      }
       table.rows.push_back(std::move(row));
     }
   }

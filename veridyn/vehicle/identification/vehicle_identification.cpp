@@ -220,20 +220,21 @@ estimation::Estimate make_vehicle_estimate(const VehicleIdentification& identifi
     if (e.method == identification.chosen || !e.usable) continue;
     for (const Parameter& p : e.parameters) out.other_methods.push_back({std::string(to_string(e.method)), p});
   }
-  if (!identification.structure_doubts.empty())
-    for (const Parameter& p : out.parameters)
-      out.fit[p.name + ".structure_doubt"] = doubt_of(identification.structure_doubts, p.name);
   if (identification.output_error && identification.chosen == VehicleMethod::kOutputError) {
     for (const Parameter& p : out.parameters) {
       const auto unknown = std::ranges::find(kDriveUnknownNames, p.name);
       if (unknown == kDriveUnknownNames.end() || !std::isfinite(p.sigma)) continue;
       const IntervalParts parts =
           interval_parts(*identification.output_error, static_cast<DriveUnknown>(unknown - kDriveUnknownNames.begin()));
-      out.fit[p.name + ".by_noise"] = parts.by_noise;
-      out.fit[p.name + ".by_budget"] = parts.by_budget;
-      out.fit[p.name + ".by_model"] = parts.by_model;
+      out.interval_parts[p.name] = {{"by_noise", "noise", parts.by_noise},
+                                    {"by_budget", "sensors and tyres", parts.by_budget},
+                                    {"by_model", "what the model lacks", parts.by_model}};
     }
   }
+  if (!identification.structure_doubts.empty())
+    for (const Parameter& p : out.parameters)
+      out.interval_parts[p.name].push_back(
+          {"structure_doubt", "which structure", doubt_of(identification.structure_doubts, p.name)});
   if (identification.output_error)
     for (const estimation::SegmentParameter& p : identification.output_error->segment_parameters)
       if (p.name == kSegmentBank) out.fit[fmt::format("{}.segment_{}", kSegmentBank, p.segment + 1)] = p.value;
