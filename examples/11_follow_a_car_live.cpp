@@ -1,7 +1,7 @@
 // A platform behind a car as it drives: packets of telemetry in, orders out, and what happens when packets stop.
 //
-// Both ends are virtual and the time is told, so that the run is the same every time. LiveLoop runs the same LiveRig by
-// the clock, between UDP sockets (UdpLinks): `veridyn cue --live`.
+// Both ends are virtual and the time is given, so that the run is the same every time. LiveLoop runs the same LiveRig
+// by the clock, between UDP sockets (UdpLinks): `veridyn cue --live`.
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -77,7 +77,7 @@ int main() try {
   constexpr double kLost = 35.0, kBack = 40.0, kEnd = 55.0;  // [s]; between the first two no packet arrives
   const live::Nanoseconds period = live::nanoseconds(1.0 / rig_study.options.rate);
   SignWatch signs;
-  std::vector<double> time, force, told, reached, share;
+  std::vector<double> time, force, ordered, reached, share;
   live::RigState state = rig.state();
   for (live::Nanoseconds now = period; now < live::nanoseconds(kEnd); now += period) {
     const double t = live::seconds(now);
@@ -100,13 +100,13 @@ int main() try {
     state = step.state;
     time.push_back(t);
     force.push_back(step.motion ? recording::in_frame(step.motion->sample, Frame::kFlu).force.y() : 0.0);
-    told.push_back(cueing::position(step.cueing.told, cueing::PlatformAxis::kRoll) / kDegree);
+    ordered.push_back(cueing::position(step.cueing.ordered, cueing::PlatformAxis::kRoll) / kDegree);
     reached.push_back(cueing::position(platform.reached(), cueing::PlatformAxis::kRoll) / kDegree);
     share.push_back(100.0 * step.share);
   }
   picture::write("11_follow_a_car_live.csv", {{"time[s]", time},
                                               {"force[m/s^2]", force},
-                                              {"told[deg]", told},
+                                              {"ordered[deg]", ordered},
                                               {"reached[deg]", reached},
                                               {"share[%]", share}});
 

@@ -23,13 +23,13 @@ using namespace veridyn::cueing;
 std::string motion_csv(const CueingRun& run, const Platform& platform) {
   std::string text = "time[s]";
   const std::vector<PlatformAxis> axes = platform.limits.moving_axes();
-  for (const char* what : {"told", "reached"}) {
+  for (const char* what : {"ordered", "reached"}) {
     for (const PlatformAxis a : axes) text += fmt::format(",{}_{}[{}]", what, name_of(a), turns(a) ? "rad" : "m");
   }
   text += "\n";
   for (std::size_t k = 0; k < run.steps.size(); ++k) {
     text += fmt::format("{}", run.vehicle[k].time);
-    for (const PlatformState* s : {&run.steps[k].told, &run.steps[k].reached}) {
+    for (const PlatformState* s : {&run.steps[k].ordered, &run.steps[k].reached}) {
       for (const PlatformAxis a : axes) text += fmt::format(",{}", axis(*s, a).position);
     }
     text += "\n";

@@ -2,7 +2,7 @@
 
 namespace veridyn::app {
 
-/// What `veridyn init cueing` writes; "@DATA@" stands for the drive.
+/// What `veridyn init cueing` writes; "@DATA@" stands for the drive; see `with_keys` for lines of `@keys`.
 constexpr const char* kCueingStudy =
     R"toml(# A study of a drive on a motion platform: which algorithm feels most like it, and what the platform does.
 #   veridyn cue study.toml              report.html: what is felt, false cues, workspace, gain and phase
@@ -15,13 +15,7 @@ seed = 1
 [cue]
 algorithms = ["tilt", "classical", "three_axis", "return", "optimal", "adaptive"]  # also "fuzzy", "moving_origin", "mpc"
 driver = [0.2, 0.35, 0.5]          # driver's head from the centre of gravity: forward, left, up [m]
-# sensor = [0, 0, 0]               # the same of the recorded accelerometer
-# gravity = "in"                   # or "out": whether recorded accelerations hold gravity; decided by accel_z
-# preset = "medium"                # "low", "medium", "high"; or overall, sustained, instant, chassis, aggression
-# perception = "young_meiry"       # "telban_cardullo", "telban_cardullo_lead", "hosman"
-# thresholds = "usual"             # "reid_nahon"
-# foresee = "fade"                 # what "mpc" plans with: "driver" (steering and pedals through the car's model: the
-#                                  # simulated one, or [cue.vehicle]), "lap" ([cue.lap])
+@keys cue sensor gravity preset perception thresholds foresee
 # [cue.lap]                        # a lap of the same track, driven before; positions are needed in both
 # file = "lap.csv"
 
@@ -33,14 +27,11 @@ subject = "three_axis"             # "hexapod"; or limits of your own:
 # heave = [-0.1, 0.1]
 # heave_rate = 0.3
 # heave_acceleration = 3
-# omega = 30                       # natural frequency of the actuators [rad/s]
-# delay = "10 ms"
-# rider = [0, 0, -0.8]             # head from the centre of rotation: forward, right, down [m]
+@keys platform omega delay rider
 
 @DATA@
 # [washout.classical]              # numbers of one algorithm
-# force_gain = [0.6, 0.6, 0.5]     # surge, sway, heave
-# tilt_rate = "3 deg/s"
+@keys washout.classical force_gain tilt_rate
 
 # [omct]                           # gain and phase of the whole chain
 # frequencies = [0.25, 0.63, 1.6, 4.0, 10.0]
@@ -50,7 +41,7 @@ subject = "three_axis"             # "hexapod"; or limits of your own:
 # least_gain = [0.2, 0.02]
 
 # [tune]                           # turn the knobs first, on this drive
-# evaluations = 150
+@keys tune evaluations
 # [tune.data]                      # or on another one
 # file = "other.csv"
 )toml";

@@ -9,10 +9,13 @@
 #include "apps/veridyn/run/console.hpp"
 #include "apps/veridyn/run/output_folder.hpp"
 #include "apps/veridyn/vehicle_template.hpp"
+#include "veridyn/aircraft/aircraft_keys.hpp"
 #include "veridyn/aircraft/sensors/channel_map.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/study_keys.hpp"
 #include "veridyn/core/text.hpp"
+#include "veridyn/cueing/cueing_keys.hpp"
+#include "veridyn/muscle/muscle_keys.hpp"
 #include "veridyn/recording/channel_recognition.hpp"
 #include "veridyn/recording/consistency.hpp"
 #include "veridyn/recording/study_data.hpp"
@@ -81,49 +84,31 @@ file = @LOG@
 # beta     = "none"              # do not use it
 
 [delays]
-# automatic = true               # find out how late each sensor is and take it off
-# gps = "0.12 s"                 # or say so
+@keys delays automatic gps
 
 [reconstruct]
-# turbulence = "auto"            # low_light, low_moderate, medium_light, medium_moderate, or what fits best
-# filter = "model-free"          # "model-based": derivatives known; "guarded": falls back by itself; "none"
-# estimate_file = "estimate.json"  # where the model-based filter takes them from; else from [subject.model]
-# estimate = ["alpha_bias", "beta_bias", "pitot_scale"]   # sensor errors; the report says what the flight determines
-# airspeed_is = "true"           # "equivalent" where the log's airspeed is indicated
+@keys reconstruct turbulence filter estimate_file estimate airspeed_is
 
 [signals]
-# pass_band = "10 Hz"            # kept; engine vibration is above, the aircraft's motion below
-# flow_angles = "auto"           # "vane", "smoothed"
-# noise = { alpha = "0.6 deg" }  # standard deviation per sample; measured from the log where it is not given
+@keys signals pass_band flow_angles
+# noise = { alpha = "0.6 deg" }    # standard deviation per sample; measured from the log where it is not given
 
 [segments]
-# holdout = 0.33                 # share of the excited time that identification never sees
-# longitudinal = [120, 150]      # s, begin and end of each, instead of searching for excitation
-# lateral = [160, 200]
+@keys segments holdout longitudinal lateral
 
 [identify]
-# method = "auto"                # "OLS", "TLS", "GTLS", "PCA-GTLS"
-# refit_significant = false      # once more with the significant parameters only
-# structure = "given"            # "stepwise", "orthogonal": choose the terms among [identify.candidates]
-# output_error = false           # alongside regression: output-error maximum likelihood
-# output_error_gusts = true      # simulated in the reconstructed gusts; false: in calm air (without ground velocity)
-# frequency_band = ["0.1 Hz", "2 Hz"]   # alongside regression: equation error in the frequency domain
-# bootstrap = 0                  # alongside regression: replicates of a block bootstrap, such as 500
+@keys identify method refit_significant structure output_error output_error_gusts frequency_band bootstrap
 
 [uncertainty]
-# draws = 100000                 # of the Monte Carlo on the measured coefficients
-# sigma = { thrust = "0.5 N" }   # error of a signal, where the log does not show it
+@keys uncertainty draws
+# sigma = { thrust = "0.5 N" }     # error of a signal, where the log does not show it
 
 [validate]
-# period = "5 s"                 # the model is started again this often
-# open_loop = "20 s"             # and flown this long from deflections and thrust alone
+@keys validate period open_loop
 
 # `veridyn track study.toml` follows the parameters on line, replayed or live (docs/tracking.md).
 [track]
-# memory = "100 s"               # a sample counts 5 % after this time
-# forgetting = "variable"        # shorter memory while innovations are large
-# false_alarm_interval = "36000 s"
-# estimate_file = "estimate.json"  # start from an earlier identification
+@keys track memory forgetting false_alarm_interval estimate_file
 )toml";
 
 /// A file's path as TOML text, so that it is found from the study's folder.
@@ -219,7 +204,8 @@ int init_aircraft(const Arguments& arguments) {
   const LogSections log =
       log_sections(arguments, aircraft::standard_channels(), aircraft::channel_aliases(),
                    [](const Recording& r) { return aircraft::map_channels(r, StudyTable("data.map"), {}); });
-  std::string study = filled(kAircraftStudy, "@LOG@", quoted_argument(arguments, "--log"));
+  std::string study =
+      filled(with_keys(kAircraftStudy, aircraft::study_keys()), "@LOG@", quoted_argument(arguments, "--log"));
   study = filled(filled(study, "@READ@", log.read), "@MAP@", log.map);
   return write_study(arguments, study, "fill in the subject, confirm [data.map]");
 }
@@ -266,14 +252,17 @@ int init_vehicle(const Arguments& arguments) {
 }
 
 int init_muscle(const Arguments& arguments) {
-  return write_study(arguments, filled(kMuscleStudy, "@MODEL@", quoted_argument(arguments, "--model")),
-                     "choose method and motion", "simulate");
+  return write_study(
+      arguments,
+      filled(with_keys(kMuscleStudy, muscle::study_keys()), "@MODEL@", quoted_argument(arguments, "--model")),
+      "choose method and motion", "simulate");
 }
 
 int init_cueing(const Arguments& arguments) {
   const bool log = !arguments.text("--log").empty();
   const std::string data = log ? drive_section(arguments, kCueingRecorded) : kCueingSimulated;
-  return write_study(arguments, filled(kCueingStudy, "@DATA@", data), "choose platform and algorithms", "cue");
+  return write_study(arguments, filled(with_keys(kCueingStudy, cueing::study_keys()), "@DATA@", data),
+                     "choose platform and algorithms", "cue");
 }
 
 const Argument kForce = {.name = "--force", .help = "replace an existing study.toml", .value = false};

@@ -14,6 +14,7 @@
 #include "veridyn/recording/ros_topics.hpp"
 #include "veridyn/recording/study_data.hpp"
 #include "veridyn/vehicle/identification/signals/drive_log.hpp"
+#include "veridyn/vehicle/model/vehicle.hpp"
 
 namespace veridyn::app {
 namespace {
@@ -60,9 +61,10 @@ std::string mapping_section(const recording::MappedRecording& mapped, bool vehic
 }
 
 /// Signs, axes and units of a drive by what its channels say of each other.
-std::string axis_section(const recording::MappedRecording& mapped, Summary& summary) {
+std::string axis_section(const recording::MappedRecording& mapped, Summary& summary, double wheelbase = 0.0) {
   const recording::DriveMotion motion = recording::drive_motion(mapped.recording);
-  const recording::Consistency found = recording::check_consistency(motion);
+  const recording::Consistency found =
+      recording::check_consistency(motion, {.wheelbase = motion.hand_wheel ? 0.0 : wheelbase});
   if (found.relations.empty()) return {};
   std::string text = fmt::format("\nsigns and units:\n  {:<52} {:>18} {:>12} {:>6}\n", "reading over what others imply",
                                  "ratio", "correlation", "[s]");
@@ -123,6 +125,16 @@ bool is_of_vehicle(const Recording& recording) {
          (recording.find("speed") != nullptr && recording.find("airspeed") == nullptr);
 }
 
+/// Of the study's vehicle; 0 where it is not filled in yet.
+double wheelbase_of(const Study& study) {
+  try {
+    return vehicle::read_vehicle(study.root().table("subject"), vehicle::VehicleNeeds::kGeometry)
+        .parameters.wheelbase();
+  } catch (const InputError&) {
+    return 0.0;
+  }
+}
+
 /// The drive of a study, with its `[data.map]`.
 int inspect_drive(const Arguments& arguments, const std::string& file) {
   const Study study = Study::load(file, arguments.common.overrides);
@@ -133,7 +145,7 @@ int inspect_drive(const Arguments& arguments, const std::string& file) {
   summary["file"] = file;
   std::string text = fmt::format("{}: drive of a study, {} channels\n", file, log.mapped.recording.channels().size());
   text += mapping_section(log.mapped, true, summary);
-  text += axis_section(log.mapped, summary);
+  text += axis_section(log.mapped, summary, wheelbase_of(study));
   if (arguments.common.json) {
     print_summary(summary, arguments.common);
   } else {

@@ -2,7 +2,8 @@
 
 namespace veridyn::app {
 
-/// What `veridyn init muscle` writes; @MODEL@ is replaced by the model's name or path.
+/// What `veridyn init muscle` writes; @MODEL@ is replaced by the model's name or path; see `with_keys` for
+/// lines of `@keys`.
 inline constexpr const char* kMuscleStudy =
     R"toml(# A study of a musculoskeletal model: which model, which motion, what to compute.
 #   veridyn inspect arm                 bodies, coordinates, muscles of a model; of your own: veridyn inspect my.osim
@@ -14,11 +15,7 @@ inline constexpr const char* kMuscleStudy =
 
 [subject]
 model = @MODEL@
-# paths = "exact"                # "fitted": polynomials, faster; "opensim": OpenSim's wrapping, its jumps included
-# locked = ["shoulder_flexion"]  # coordinates held where they start
-# unlocked = []                  # coordinates that the model locks and that move all the same
-# without_contact = false        # leave the model's contacts out: external loads have their forces
-# without_unsupported = false    # go on without forces and constraints of the model that are not understood
+@keys subject paths locked unlocked without_contact without_unsupported
 
 # Parameters other than the model's: max_isometric_force, optimal_fiber_length, tendon_slack_length,
 # pennation_angle_at_optimal, max_contraction_velocity (in L0/s), activation_time_constant, deactivation_time_constant.
@@ -36,9 +33,7 @@ model = @MODEL@
 method = "forward"               # "inverse dynamics", "static optimization", "computed muscle control"
 # begin = 0                      # s; of a motion file its beginning
 duration = 1                     # s; of a motion file its rest when left out
-# rate = 200                     # Hz, rows of the results
-# accuracy = 1e-5                # of the integration
-# reserve_force = 1              # N m, of an actuator that helps each free coordinate; 0: none
+@keys motion rate accuracy reserve_force
 
 # Where it is at `begin`, by coordinate; the model's default pose where nothing is said.
 [motion.start]
@@ -87,15 +82,10 @@ default = 0.05
 # pelvis_ty = 0
 
 [motion.control]                 # computed muscle control
-# window = "10 ms"               # controls are held so long
-# kp = 100                       # 1/s^2, gains on the errors of position
-# kv = 20                        # 1/s, and speed
-# min_control = 0.02
-# max_control = 1
+@keys motion.control window kp kv min_control max_control
 
 [motion.static_optimization]
-# exponent = 2                   # of the activations in the sum that is made least
-# formulation = "with passive"   # "as opensim": without passive forces; "without physiology": force = activation F0
+@keys motion.static_optimization exponent formulation
 
 # --- veridyn identify study.toml: muscle parameters from motions --------------------------------------------------------
 # What it estimates; without this: maximum force, optimal fibre length, tendon slack length of every muscle.
@@ -121,8 +111,7 @@ hold_out = [12]                  # kept to validate on
 # shoulder_flexion = "0 deg"
 
 # [identify]
-# advice = true                  # name the further elbow task that would narrow the widest interval most
-# profiles = false               # profile likelihood of all parameters, or of those in a list
+@keys identify advice profiles
 
 # A simulated person, to see what the tasks would determine. Delete it where tasks are measured.
 [person]

@@ -1,4 +1,4 @@
-// veridyn scale STUDY: similarity scaling of a vehicle, and how like the original a scaled one is.
+// veridyn scale STUDY: similarity scaling of a vehicle, and how similar a given one is.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -9,7 +9,7 @@ constexpr const char* kVehicleStudy = R"toml(# A study of a road vehicle: drive 
 #                                       without a log the drive below is simulated and its truth shown alongside
 #   veridyn sensitivity study.toml      which number of the vehicle moves which result of the drive below, without a log
 #   veridyn track study.toml            follows cornering stiffnesses on line, replayed or --live
-#   veridyn scale study.toml            the same vehicle in another size, and how like it a model is
+#   veridyn scale study.toml            the same vehicle in another size, and how similar a model is
 # Numbers are SI and radians; a text may carry any unit of the same kind: "80 km/h", "12 deg". Keys with a leading # show
 # their defaults. Misspelt keys are refused, with the nearest known one. Axes after ISO 8855: x forward, y left, z up.
 

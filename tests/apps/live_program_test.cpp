@@ -389,7 +389,7 @@ TEST_F(LiveProgramTest, PlatformIsMeasuredByHandAndTheSecondProgramIsToldWhoComm
   const auto& pitch = json["axes"]["pitch"];
   EXPECT_NEAR(pitch["gain"]["value"].get<double>(), 1.0, 0.1) << sweep.text;
   EXPECT_NEAR(pitch["omega_rad_s"]["value"].get<double>(), 30.0, 9.0) << sweep.text;
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "sweep/told_and_reached.csv"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "sweep/ordered_and_reached.csv"));
   // What was measured is read by the study that names the file, axis by axis; run.json says which file that was.
   const std::string measured = read_file(folder_ / "sweep/platform.toml");
   for (const char* key : {"pitch_omega = ", "pitch_zeta = ", "pitch_delay = ", "omega = 30.0"})
@@ -408,8 +408,8 @@ TEST_F(LiveProgramTest, PlatformIsMeasuredByHandAndTheSecondProgramIsToldWhoComm
   std::this_thread::sleep_for(until_another_may_command);
   const Outcome force = run(test_of("force", " --signal force --value 1m/s^2 --seconds 3"));
   ASSERT_EQ(force.exit_code, 0) << force.text;
-  const std::string told = read_file(folder_ / "force/told_and_reached.csv");
-  EXPECT_NEAR(std::stod(told.substr(told.rfind(',') + 1)), std::asin(1.0 / 9.80665), 1e-3);  // reached at last
+  const std::string ordered = read_file(folder_ / "force/ordered_and_reached.csv");
+  EXPECT_NEAR(std::stod(ordered.substr(ordered.rfind(',') + 1)), std::asin(1.0 / 9.80665), 1e-3);  // reached at last
   expect_refusal(test_of("wrong", " --signal pose --value 40deg"),
                  "takes pitch to 0.6981 rad; its range is -0.2618 to");
   expect_refusal(test_of("wrong", " --signal pose --value 40mm"), "--value: = '40mm' for pitch");

@@ -20,7 +20,7 @@ class ServeProgramTest : public ProgramTest {
  protected:
   [[nodiscard]] int port() const { return 27000 + static_cast<int>(::getpid()) % 3000; }
   [[nodiscard]] std::string page() const { return " --page 127.0.0.1:" + std::to_string(port()); }
-  /// All that the page is told now.
+  /// All that the page gets now.
   [[nodiscard]] nlohmann::json status() const {
     const PageReader reader(port(), "GET /status HTTP/1.1\r\nConnection: close\r\n");
     std::string all;

@@ -331,10 +331,10 @@ TEST_F(VehicleProgram, InspectSaysWhichUnitIsWrongAndItsLineMendsIt) {
   const std::string line = "speed = { channel = \"speed\", scale = 0.277778 }";
   EXPECT_THAT(wrong.text, HasSubstr("correct it in [data.map]: " + line));
   EXPECT_THAT(run("inspect " + study).text, HasSubstr("speed is in km/h"));
-  const Outcome mended =
-      run("inspect " + file("mended.toml", "[data]\nfile = \"kmh.csv\"\n[data.map]\n" + line + "\n"));
-  ASSERT_EQ(mended.exit_code, 0) << mended.text;
-  EXPECT_THAT(mended.text, HasSubstr("nothing contradicts"));
+  const Outcome corrected =
+      run("inspect " + file("corrected.toml", "[data]\nfile = \"kmh.csv\"\n[data.map]\n" + line + "\n"));
+  ASSERT_EQ(corrected.exit_code, 0) << corrected.text;
+  EXPECT_THAT(corrected.text, HasSubstr("nothing contradicts"));
   EXPECT_EQ(nlohmann::json::parse(run("inspect " + study + " --json").text)["signs_and_units"]["faults"].size(), 1U);
   expect_refusal("inspect " + file("misspelt.toml", "[data]\nfile = \"kmh.csv\"\nfrm = 2\n"),
                  "misspelt.toml:3: data.frm: unknown key");

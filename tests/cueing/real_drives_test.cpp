@@ -45,8 +45,8 @@ void expect_better_than_the_tilt_channel(const std::string& rate) {
   for (const AlgorithmResult& a : result->algorithms) {
     for (std::size_t i = 3; i < kPlatformAxes; ++i) {
       const auto axis_of = static_cast<PlatformAxis>(i);
-      EXPECT_LT(std::abs(axis(a.run.steps.front().told, axis_of).position), 0.01 * kDegree);
-      EXPECT_LT(std::abs(axis(a.run.steps[1].told, axis_of).position), 0.01 * kDegree);
+      EXPECT_LT(std::abs(axis(a.run.steps.front().ordered, axis_of).position), 0.01 * kDegree);
+      EXPECT_LT(std::abs(axis(a.run.steps[1].ordered, axis_of).position), 0.01 * kDegree);
     }
     for (const std::size_t pair : {0U, 1U}) EXPECT_GT(a.score.pairs[pair].value, result->least[pair]->error);
   }
@@ -99,7 +99,7 @@ TEST(RealDrives, AMinuteOfFreewayIsRenderedWithGravityInItsAccelerations) {
   // The specific force at rest is not taken for heave: in the mean the platform stays in its middle.
   double mean = 0.0;
   for (const CueingStep& step : mpc.run.steps)
-    mean += axis(step.told, PlatformAxis::kHeave).position / static_cast<double>(mpc.run.steps.size());
+    mean += axis(step.ordered, PlatformAxis::kHeave).position / static_cast<double>(mpc.run.steps.size());
   EXPECT_NEAR(mean, 0.0, 0.01);
   EXPECT_LT(of(*result, "tilt").score.cues[Cue::kSurge].rmse.value, 1.0);
 }

@@ -57,10 +57,10 @@ Rendered rendered(const std::vector<MotionSample>& drive, const std::string& alg
   const Eigen::Vector3d down = last.attitude.conjugate() * Eigen::Vector3d::UnitZ();
   r.vehicle_roll = std::atan2(down.y(), down.z());
   r.force = last.force.y();
-  r.roll = axis(run.steps.back().told, PlatformAxis::kRoll).position;
+  r.roll = axis(run.steps.back().ordered, PlatformAxis::kRoll).position;
   for (std::size_t k = 0; k < run.steps.size(); ++k) {
     r.acceleration = std::max(r.acceleration, std::abs(recording::acceleration(run.vehicle[k]).y()));
-    r.shift = std::max(r.shift, std::abs(axis(run.steps[k].told, PlatformAxis::kSway).position));
+    r.shift = std::max(r.shift, std::abs(axis(run.steps[k].ordered, PlatformAxis::kSway).position));
   }
   return r;
 }

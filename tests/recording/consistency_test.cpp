@@ -169,6 +169,8 @@ TEST(Consistency, NamesAnyRatioOfTheHandWheelWhereTheWheelbaseIsKnown) {
     ASSERT_EQ(c.explanations.size(), 1U) << ratio << testing::PrintToString(said(c, m));
     EXPECT_TRUE(c.explanations[0][0].hand_wheel) << ratio;
     EXPECT_NEAR(c.explanations[0][0].factor, ratio, 0.2 * ratio);
+    EXPECT_LT(c.explanations[0][0].least, ratio);
+    EXPECT_GT(c.explanations[0][0].most, ratio);
   }
   DriveMotion twice = drive(4);
   scale(twice, {kSteer}, 2.0);

@@ -27,11 +27,13 @@ constexpr Noise kReference{.force = 0.05, .rate = 0.35 * kDegree, .angle = 0.75 
 
 /// A body that sways about all axes, by closed forms: attitude and velocity are sums of sines, rates and specific force
 /// their derivatives. No model of a vehicle and no integration is behind it.
-Recording swaying_body(std::uint64_t seed, const Noise& noise) {
+/// @param heave  angular frequency of its vertical motion [rad/s]
+Recording swaying_body(std::uint64_t seed, const Noise& noise, double heave = 0.6) {
   numerics::RandomStream random(seed, "swaying body");
   constexpr double kStep = 0.01;
   constexpr std::array<double, 3> kAngle{0.5, 0.25, 1.2}, kAngleRate{0.9, 0.7, 0.23};
-  constexpr std::array<double, 3> kSpeed{6.0, 5.0, 3.0}, kSpeedRate{0.41, 0.53, 0.6};
+  constexpr std::array<double, 3> kSpeed{6.0, 5.0, 3.0};
+  const std::array<double, 3> speed_rate{0.41, 0.53, heave};
   std::vector<double> fast, slow;
   std::array<std::vector<double>, 12> v;
   for (double t = 0.0; t < kDuration_s; t += kStep) {
@@ -40,7 +42,7 @@ Recording swaying_body(std::uint64_t seed, const Noise& noise) {
     for (int i = 0; i < 3; ++i) {
       angle(i) = kAngle[i] * std::sin(kAngleRate[i] * t + i);
       angle_rate(i) = kAngle[i] * kAngleRate[i] * std::cos(kAngleRate[i] * t + i);
-      acceleration(i) = kSpeed[i] * kSpeedRate[i] * std::cos(kSpeedRate[i] * t + 2 * i);
+      acceleration(i) = kSpeed[i] * speed_rate[i] * std::cos(speed_rate[i] * t + 2 * i);
     }
     const auto rates = numerics::body_rates(angle(0), angle(1), angle_rate);
     const auto force = (numerics::R_body_from_ned(angle(0), angle(1), angle(2)) *
@@ -55,7 +57,7 @@ Recording swaying_body(std::uint64_t seed, const Noise& noise) {
   for (double t = 0.0; t < kDuration_s; t += 0.1) {
     slow.push_back(t);
     for (std::size_t k = 0; k < 3; ++k)
-      v[9 + k].push_back(kSpeed[k] * std::sin(kSpeedRate[k] * t + 2.0 * static_cast<double>(k)) +
+      v[9 + k].push_back(kSpeed[k] * std::sin(speed_rate[k] * t + 2.0 * static_cast<double>(k)) +
                          noise.velocity * random.normal());
   }
   Recording recording;
@@ -166,16 +168,21 @@ TEST(InertialEvidence, NamesALateOrSmoothedVelocity) {
       if (row.check == Check::kVelocityDelay) EXPECT_EQ(row.cause, Cause::kDelay);
     }
   }
-  Recording recording = swaying_body(5, kReference);
-  Channel down = recording.at("vel_down");
-  double state = down.value.front();
-  for (double& v : down.value) v = state += 0.1 / 0.7 * (v - state);  // a filter of 0.7 s
-  recording.set(std::move(down));
-  for (const estimation::Evidence& row : inertial_evidence(inertial_consistency(recording, kWhole))) {
-    if (row.check == Check::kVelocityDelay) {
-      EXPECT_EQ(row.cause, Cause::kLag) << says(row);
-    } else {
-      EXPECT_NE(row.outcome, Outcome::kFailed) << says(row);
+  // A vertical speed behind a filter of its own, in slow motion and in such as a manoeuvre of the elevator makes, of
+  // which the filter takes a part.
+  for (const auto& [filter_s, heave] : {std::pair{0.7, 0.6}, {0.2, 3.0}, {0.4, 3.0}}) {
+    SCOPED_TRACE(filter_s);
+    Recording recording = swaying_body(5, kReference, heave);
+    Channel down = recording.at("vel_down");
+    double state = down.value.front();
+    for (double& v : down.value) v = state += (1.0 - std::exp(-0.1 / filter_s)) * (v - state);
+    recording.set(std::move(down));
+    for (const estimation::Evidence& row : inertial_evidence(inertial_consistency(recording, kWhole))) {
+      if (row.check == Check::kVelocityDelay) {
+        EXPECT_EQ(row.cause, Cause::kLag) << says(row);
+      } else {
+        EXPECT_TRUE(row.passed()) << says(row);
+      }
     }
   }
 }

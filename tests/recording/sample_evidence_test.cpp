@@ -83,6 +83,11 @@ TEST(SampleEvidence, NamesAControlOnlyAfterLong) {
          Outcome::kFailed, "rudder stands still");
 }
 
+TEST(SampleEvidence, ASpeedThatIsTheSameAllTheTimeIsNoFault) {
+  expect(after("rudder", [](double, double) { return 0.2; }), "rudder", Outcome::kNotVerified,
+         "rudder does not change");
+}
+
 TEST(SampleEvidence, LeavesTheRestOfAControlToThoseWhoKnowTheVehicle) {
   Recording recording = moving(3);
   Channel rudder = recording.at("rudder");

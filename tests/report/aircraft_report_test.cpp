@@ -117,7 +117,7 @@ TEST(IdentificationReport, OfAGivenEstimateHasNoParametersOfItsOwn) {
   const Document document =
       identification_report(f.study, f.analysis, {.program = "veridyn test", .command = "validate"});
   check(document);
-  EXPECT_EQ(document.subtitle, "A given estimate tried on this flight");
+  EXPECT_EQ(document.subtitle, "A given estimate validated on this flight");
   for (const char* title : {"Parameters", "Estimates of all methods", "Excitation", "Residuals"})
     EXPECT_THAT(test::titles_of(document), Not(Contains(title)));
 }

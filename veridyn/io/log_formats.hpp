@@ -16,7 +16,7 @@ namespace veridyn::io {
 enum class Recognition {
   kBeginning,  ///< known by its first bytes: tried first
   kContent,    ///< known by what is found further on, which a file of the first kind may hold by chance
-  kText,       ///< any text may be it: tried last, and believed of a single line only where the file's name agrees
+  kText,       ///< any text may be it: tried last, and taken of a single line only where the file's name agrees
 };
 
 /// A format of logs that are one file: all that the rest of the library, the program, tests and fuzzing know of it.

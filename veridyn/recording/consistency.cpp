@@ -192,11 +192,21 @@ class Explainer {
     return found == chosen_.end() ? nullptr : *found;
   }
 
+  /// The ratio of a hand wheel as far as relations know it, whatever most cars have.
+  void take_ratio(ChannelFault& fault, Range by_relations) const {
+    const double unit = fault.truly == "deg" ? m_.recorded_in[kSteer].scale / kDegree : 1.0;
+    const double sign = fault.factor < 0.0 ? -1.0 : 1.0;
+    const Range along = product(by_relations, {sign, sign});
+    fault.least = std::max(along.low, kLeastSteeringRatio * unit) / unit;
+    fault.most = std::min(along.high, kMostSteeringRatio * unit) / unit;
+    fault.factor = sign * unit * std::sqrt(fault.least * fault.most);
+  }
+
   /// Takes the chosen faults down where they explain everything that is off and put nothing else off.
   void consider(double cost) {
     const Suspect* const free = free_one();
     Range factor{free != nullptr ? free->least : 1.0, free != nullptr ? free->most : 1.0};
-    Range measured = factor;
+    Range measured = factor, by_relations{};
     double sharpest = kInfinity;
     for (const ChannelRelation& r : relations_) {
       const auto [reading, truth] = known_factors(r);
@@ -230,6 +240,7 @@ class Explainer {
       may = product(may, {sign, sign});
       seen = product(seen, {sign, sign});
       factor = {std::max(factor.low, may.low), std::min(factor.high, may.high)};
+      by_relations = {std::max(by_relations.low, may.low), std::min(by_relations.high, may.high)};
       const double width = (seen.high - seen.low) / std::abs(seen.high + seen.low);
       if (recording::is_off(r) && width < sharpest) sharpest = width, measured = seen;
       if (!(factor.low <= factor.high)) return;
@@ -242,8 +253,10 @@ class Explainer {
     best_ = std::min(best_, cost);
     std::vector<ChannelFault> faults;
     for (const Suspect* s : chosen_) {
-      faults.push_back(s->fault);
-      if (s == free) faults.back().factor = std::clamp(found_factor, factor.low, factor.high);
+      ChannelFault& fault = faults.emplace_back(s->fault);
+      if (s != free) continue;
+      fault.factor = std::clamp(found_factor, factor.low, factor.high);
+      if (fault.hand_wheel) take_ratio(fault, by_relations);
     }
     found_.emplace_back(std::move(faults), cost);
   }
@@ -368,8 +381,8 @@ std::string ChannelFault::says(const ChannelNames& called) const {
   switch (cause) {
     case Cause::kUnit:
       if (hand_wheel)
-        return fmt::format("{} is the hand wheel's angle in {} ({:.3g} times that of the road wheels)", all, truly,
-                           std::abs(factor));
+        return fmt::format("{} is the hand wheel's angle in {} ({:.3g} to {:.3g} times that of the road wheels)", all,
+                           truly, least, most);
       return fmt::format("{} {} in {}, not {}", all, one ? "is" : "are", truly, taken);
     case Cause::kSign:
       return one ? fmt::format("{} has the wrong sign", all)
@@ -415,8 +428,8 @@ std::vector<std::string> correction_of(const ChannelFault& fault, const ChannelN
 }
 
 std::string mistaken_unit(const Unit& taken, double factor, double doubt) {
-  constexpr double kNear = 0.03, kMostDoubt = 0.15;
-  const double within = std::clamp(doubt, kNear, kMostDoubt);
+  constexpr double kLeastDoubt = 0.03, kMostDoubt = 0.15;
+  const double within = std::clamp(doubt, kLeastDoubt, kMostDoubt);
   std::string nearest;
   double least = within;
   for (const Unit& truly : units_like(taken)) {

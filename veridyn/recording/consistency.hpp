@@ -58,6 +58,7 @@ struct ChannelFault {
   std::string taken = {};                  ///< for which it was taken ("m/s")
   bool hand_wheel = false;                 ///< the angle of the hand wheel taken for that of the road wheels
   std::vector<InertialChannel> from = {};  ///< of exchanged axes: where each of `channels` is recorded
+  double least = 1.0, most = 1.0;          ///< of a hand wheel: its angle over that of the road wheels
 
   /// "speed is in km/h, not m/s".
   [[nodiscard]] std::string says(const ChannelNames& names) const;

@@ -149,6 +149,7 @@ const KeyTable<RecordingKeys>& RecordingKeys::keys() {
           .other({"packet", "", "a name, or a table that describes one", "by the content",
                   "the file holds packets of telemetry, one after the other", true},
                  read_packet)
+          .within("packet", io::packet_layout_keys(), [](const StudyTable&, K&) {})
           .within("time", time_keys(),
                   [](const StudyTable& t, K& k) {
                     if (t.has("time")) k.time = t.table("time");

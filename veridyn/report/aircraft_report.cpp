@@ -136,8 +136,8 @@ Document identification_report(const FlightStudy& study, const FlightAnalysis& a
   const bool given = context.command == "validate";
   Document document = started_document(
       fmt::format("{}: aerodynamic model", study.subject.name),
-      given ? (analysis.flights.size() > 1 ? "A given estimate tried on these flights"
-                                           : "A given estimate tried on this flight")
+      given ? (analysis.flights.size() > 1 ? "A given estimate validated on these flights"
+                                           : "A given estimate validated on this flight")
             : (analysis.flights.size() > 1 ? "Identified from several flights" : "Identified from flight"),
       context.program);
   document.verdict = verdict_of(analysis.estimate);

@@ -57,7 +57,7 @@ test('values move while the rig runs', { skip }, async () => {
 
 test('the platform is drawn in space, where it is and where it is commanded to be, and can be turned', { skip }, async () => {
   assert.equal((await page.$$('#platform .leg')).length, 3);
-  assert.equal((await page.$$('#platform .told')).length, 1);
+  assert.equal((await page.$$('#platform .ordered')).length, 1);
   const plate = () => page.getAttribute('#platform .reached', 'points');
   const first = await plate();
   await sleep(1000);

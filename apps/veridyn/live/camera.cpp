@@ -121,10 +121,10 @@ int fuse_drive(const Arguments& arguments) {
                                  "+- {:.1f}) off",
                                  drive.motion.size(), drive.frames, drive.left_out, 1e3 * last.offset, 1960.0 * sigma));
   if (drive.gaps > 0) print_line(common, fmt::format("warning: the fusion began again after {} gaps", drive.gaps));
-  constexpr double kFar = 0.2;
+  constexpr double kShareRejected = 0.2;
   for (std::size_t i = 0; i < drive.innovations.size(); ++i) {
     const auto& s = drive.innovations[i];
-    if (s.count > 0 && static_cast<double>(s.rejected) > kFar * static_cast<double>(s.count))
+    if (s.count > 0 && static_cast<double>(s.rejected) > kShareRejected * static_cast<double>(s.count))
       print_line(common,
                  fmt::format("warning: {} of {} measurements of {} contradict the inertial sensors: are the axes "
                              "x forward, y left, z up, and is the accelerometer a - g (+9.8 upwards at rest)?",

@@ -135,8 +135,8 @@ void print_times(const CommonOptions& common, const CameraTimes& times, const Ca
     print_line(common,
                "warning: the driver's stamps are of another clock; pictures are stamped when they arrive, late by "
                "what the camera takes to hand them over");
-  constexpr double kFew = 0.01;
-  if (static_cast<double>(times.missed) > kFew * static_cast<double>(frames + times.missed))
+  constexpr double kShareLost = 0.01;
+  if (static_cast<double>(times.missed) > kShareLost * static_cast<double>(frames + times.missed))
     print_line(common,
                fmt::format("warning: {} pictures were missed: following one takes longer than the camera needs for "
                            "the next, or it gives fewer in the dark (exposure)",

@@ -39,13 +39,13 @@ std::string motion_csv(const LiveReplay& r) {
   for (std::size_t i = 0; i < cueing::kPlatformAxes; ++i) {
     if (platform.limits.axes[i].moves()) axes.push_back(static_cast<cueing::PlatformAxis>(i));
   }
-  for (const cueing::PlatformAxis a : axes) text += fmt::format(",told_{}[{}]", name_of(a), turns(a) ? "rad" : "m");
+  for (const cueing::PlatformAxis a : axes) text += fmt::format(",ordered_{}[{}]", name_of(a), turns(a) ? "rad" : "m");
   text += "\n";
   for (std::size_t k = 0; k < r.run.steps.size(); ++k) {
     const recording::MotionSample& v = r.run.vehicle[k];
     text += fmt::format("{:.4f},{},{:.4f},{:.5g},{:.5g},{:.5g}", v.time, name_of(r.states[k]), r.shares[k], v.force.x(),
                         v.force.y(), v.force.z());
-    for (const cueing::PlatformAxis a : axes) text += fmt::format(",{:.6g}", axis(r.run.steps[k].told, a).position);
+    for (const cueing::PlatformAxis a : axes) text += fmt::format(",{:.6g}", axis(r.run.steps[k].ordered, a).position);
     text += "\n";
   }
   return text;

@@ -35,7 +35,7 @@ extern "C" void stop_on_signal(int) {
 }
 extern "C" void hang_up_on_signal(int) { hung_up_by_signal = true; }
 
-/// What the operator is told, once for each change.
+/// Messages to the operator, once for each change.
 class Console {
  public:
   explicit Console(const CommonOptions& options) : options_(options) {}

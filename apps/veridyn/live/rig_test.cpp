@@ -60,10 +60,10 @@ class PlatformByHand {
   }
 
   /// One order at its time. @return where the axis was commanded to be
-  double command(PlatformAxis axis, double wanted) {
+  double command(PlatformAxis axis, double desired) {
     clock_.sleep_until(rate_.next());
     cueing::PlatformState to;
-    set_axis(to, axis, {.position = wanted, .rate = 0.0, .acceleration = 0.0});
+    set_axis(to, axis, {.position = desired, .rate = 0.0, .acceleration = 0.0});
     PlatformOrder order;
     order.session = session_;
     order.sequence = ++sequence_;
@@ -129,12 +129,12 @@ ToldAndReached play(PlatformByHand& platform, PlatformAxis axis, const TestSigna
   const auto steps = static_cast<long>(duration * study.options.rate);
   const cueing::AxisLimits& limits = study.cueing.platform.limits[axis];
   for (long k = 0; k < steps && !interruption.requested(); ++k)
-    motion.told.push_back(
+    motion.ordered.push_back(
         platform.command(axis, wanted_position(signal, limits, static_cast<double>(k) * motion.step)));
   constexpr double kHomeWithin = 3.0;  // [s]
   for (long k = 0; k < static_cast<long>(kHomeWithin * study.options.rate); ++k) platform.command(axis, 0.0);
   double last = 0.0;
-  for (std::size_t k = 0; k < motion.told.size(); ++k) {
+  for (std::size_t k = 0; k < motion.ordered.size(); ++k) {
     last = platform.reached(first + static_cast<std::uint32_t>(k), axis).value_or(last);
     motion.reached.push_back(last);
   }
@@ -218,7 +218,7 @@ int rig_test(const Arguments& arguments) {
   ignore_broken_pipes();
   OutputFolder folder(options.out);
   PlatformByHand platform(study);
-  std::string csv = "axis,time[s],told[m or rad],reached[m or rad]\n";
+  std::string csv = "axis,time[s],ordered[m or rad],reached[m or rad]\n";
   std::map<PlatformAxis, PlatformResponse> responses;
   for (const PlatformAxis axis : axes) {
     print_line(options, fmt::format("{}: {}, {:g} s", name_of(axis), name_of(signal.signal), signal.duration));
@@ -226,9 +226,9 @@ int rig_test(const Arguments& arguments) {
     if (options.interruption.requested()) throw Interrupted();
     if (platform.answers() == 0 && study.options.answers)
       throw InputError("live.platform", fmt::format("{} does not answer", platform_name(study)));
-    for (std::size_t k = 0; k < motion.told.size(); ++k)
+    for (std::size_t k = 0; k < motion.ordered.size(); ++k)
       csv += fmt::format("{},{:.5g},{:.7g},{:.7g}\n", name_of(axis), static_cast<double>(k) * motion.step,
-                         motion.told[k], motion.reached[k]);
+                         motion.ordered[k], motion.reached[k]);
     if (signal.signal != TestSignal::kSweep || !study.options.answers) continue;
     const PlatformResponse& r = responses[axis] = fit_response(motion);
     print_line(
@@ -239,7 +239,7 @@ int rig_test(const Arguments& arguments) {
                     1e3 * r.delay.value, 1e3 * r.delay.sigma, 100.0 * r.rms));
     for (const std::string& note : r.notes) print_line(options, fmt::format("{}: {}", name_of(axis), note));
   }
-  folder.write("told_and_reached.csv", csv);
+  folder.write("ordered_and_reached.csv", csv);
   Summary summary;
   summary["folder"] = folder.path().string();
   for (const auto& [axis, r] : responses) {

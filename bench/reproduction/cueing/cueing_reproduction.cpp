@@ -63,7 +63,7 @@ ShoaraiWashout::Pose golden(double steps, bool gravity_from_zero) {
   return pose;
 }
 
-/// Of the classical algorithm through the whole chain, on a platform that is at once where it is told to be.
+/// Of the classical algorithm through the whole chain, on a platform that is at once where it is ordered to be.
 ResponsePoint response(Cue cue, double frequency) {
   Platform platform = built_in_platform("ideal");
   platform.rider.setZero();
@@ -79,8 +79,8 @@ ResponsePoint response(Cue cue, double frequency) {
 std::span<const Quantity> quantities() {
   using enum PlatformAxis;
   static const std::vector<Quantity> all = {
-      {"pitch_reached", "rad", "rad", "pitch reached when told", [](double x, Runs&) { return reached(kPitch, x); }},
-      {"roll_reached", "rad", "rad", "roll reached when told", [](double x, Runs&) { return reached(kRoll, x); }},
+      {"pitch_reached", "rad", "rad", "pitch reached when ordered", [](double x, Runs&) { return reached(kPitch, x); }},
+      {"roll_reached", "rad", "rad", "roll reached when ordered", [](double x, Runs&) { return reached(kRoll, x); }},
       {"pitch_held", "m/s^2", "rad", "pitch held under a force of",
        [](double x, Runs&) { return held_tilt(kPitch, x); }},
       {"roll_held", "m/s^2", "rad", "roll held under a force of", [](double x, Runs&) { return held_tilt(kRoll, x); }},
@@ -111,7 +111,7 @@ std::span<const Quantity> quantities() {
        [](double x, Runs&) { return golden(x, true).shift.z(); }},
       {"shoarai_roll", "1", "rad", "shoarai/washout, roll at step",
        [](double x, Runs&) { return golden(x, true).angle.x(); }},
-      {"shoarai_heave_mended", "1", "m", "the same with gravity from the start, heave at step",
+      {"shoarai_heave_corrected", "1", "m", "the same with gravity from the start, heave at step",
        [](double x, Runs&) { return golden(x, false).shift.z(); }},
       {"surge_gain", "rad/s", "1", "gain of surge at", [](double x, Runs&) { return response(Cue::kSurge, x).gain; }},
       {"surge_phase", "rad/s", "rad", "phase of surge at",

@@ -140,13 +140,13 @@ Experiment level_track() {
   return e;
 }
 
-double reached(PlatformAxis axis, double told) {
+double reached(PlatformAxis axis, double ordered) {
   const Platform& platform = built_in_platform("three_axis_measured");
   PlatformSimulator simulator(platform);
   PlatformState command;
   simulator.reset(command);
   for (int k = 0; k < 1000; ++k) {
-    set_axis(command, axis, {told * smooth(kControlStep * k / 4.0), 0.0, 0.0});
+    set_axis(command, axis, {ordered * smooth(kControlStep * k / 4.0), 0.0, 0.0});
     simulator.step(command, kControlStep);
   }
   return cueing::axis(simulator.state(), axis).position;

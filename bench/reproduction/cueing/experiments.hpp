@@ -18,7 +18,7 @@ struct Experiment {
   std::vector<Curve> curves;
 };
 
-/// The scaled car over a ramp of 30 deg up and down again (or banked by as much): what the platform is told with
+/// The scaled car over a ramp of 30 deg up and down again (or banked by as much): the commands of the platform with
 /// washout, and without: there the angle that was turned through and the tilt for the force add up. Before the
 /// platform's limits. Curves "road", "with washout", "without washout".
 /// @param axis kPitch or kRoll
@@ -29,8 +29,8 @@ struct Experiment {
 /// 50 times a second, and takes its acceleration from a parabola through 0.3 s. Curves "naive", "with the camera".
 [[nodiscard]] Experiment level_track();
 
-/// Where the measured three-axis platform comes to rest. @param axis kRoll or kPitch @param told [rad]
-[[nodiscard]] double reached(PlatformAxis axis, double told);
+/// Where the measured three-axis platform comes to rest. @param axis kRoll or kPitch @param ordered [rad]
+[[nodiscard]] double reached(PlatformAxis axis, double ordered);
 
 /// Tilt of that platform under a lasting force by tilt coordination alone [rad]. @param force [m/s^2]
 [[nodiscard]] double held_tilt(PlatformAxis axis, double force);

@@ -30,8 +30,8 @@ TEST(CueingChain, OnTheIdealPlatformReachesWhatIsWanted) {
   for (int k = 1; k < 2000; ++k) {
     const CueingStep s = chain.step(driving(0.01 * k), 0.01);
     // Where the tilt begins to turn, at 3 deg/s at once, the guard rounds the corner off.
-    ASSERT_LT((s.reached.angle - s.wanted.angle).norm(), 5e-4) << k;
-    ASSERT_LT((s.reached.shift - s.wanted.shift).norm(), 1e-4) << k;
+    ASSERT_LT((s.reached.angle - s.desired.angle).norm(), 5e-4) << k;
+    ASSERT_LT((s.reached.shift - s.desired.shift).norm(), 1e-4) << k;
   }
 }
 
@@ -40,12 +40,12 @@ TEST(CueingChain, AnotherAlgorithmTakesOverWithoutAJump) {
   chain.reset(driving(0.0));
   CueingStep before, after;
   for (int k = 1; k < 700; ++k) before = chain.step(driving(0.01 * k), 0.01);
-  EXPECT_GT(before.told.angle.norm(), 2.0 * kDegree);
+  EXPECT_GT(before.ordered.angle.norm(), 2.0 * kDegree);
   chain.take_over(washout("optimal"), driving(7.0));
   after = chain.step(driving(7.01), 0.01);
-  const double went = (before.told.angle - chain.guard().state().angle).norm();
+  const double went = (before.ordered.angle - chain.guard().state().angle).norm();
   EXPECT_LT(went, 0.2 * kDegree);
-  EXPECT_LT((before.told.angle - after.wanted.angle).norm(), 0.05 * kDegree);
+  EXPECT_LT((before.ordered.angle - after.desired.angle).norm(), 0.05 * kDegree);
   // The difference dies away: after five seconds it is the new algorithm alone.
   CueingChain alone(washout("optimal"), built_in_platform("hexapod"));
   alone.reset(driving(7.0));
@@ -54,7 +54,7 @@ TEST(CueingChain, AnotherAlgorithmTakesOverWithoutAJump) {
     after = chain.step(driving(0.01 * k), 0.01);
     before = alone.step(driving(0.01 * k), 0.01);
   }
-  EXPECT_LT((after.wanted.angle - before.wanted.angle).norm(), 1e-3 * kDegree);
+  EXPECT_LT((after.desired.angle - before.desired.angle).norm(), 1e-3 * kDegree);
 }
 
 /// A chain that has followed the drive for seven seconds.
@@ -72,11 +72,11 @@ TEST(CueingChain, FollowsAShareOfItsAlgorithmAndLeadsToNeutralAtNone) {
     w = whole.step(driving(0.01 * k), 0.01);
     h = half.step(driving(0.01 * k), 0.01, 0.5);
   }
-  EXPECT_GT(w.told.angle.norm(), 1.0 * kDegree);
-  EXPECT_LT((h.told.angle - 0.5 * w.told.angle).norm(), 1e-3 * kDegree);
+  EXPECT_GT(w.ordered.angle.norm(), 1.0 * kDegree);
+  EXPECT_LT((h.ordered.angle - 0.5 * w.ordered.angle).norm(), 1e-3 * kDegree);
   for (int k = 0; k < 500; ++k) h = half.hold(0.01, 0.0);
-  EXPECT_LT(h.told.angle.norm(), 1e-6);
-  EXPECT_LT(h.told.shift.norm(), 1e-6);
+  EXPECT_LT(h.ordered.angle.norm(), 1e-6);
+  EXPECT_LT(h.ordered.shift.norm(), 1e-6);
 }
 
 TEST(CueingChain, HoldsWhatItWasLastTold) {
@@ -84,8 +84,8 @@ TEST(CueingChain, HoldsWhatItWasLastTold) {
   const CueingStep before = chain.step(driving(7.0), 0.01);
   CueingStep s;
   for (int k = 0; k < 100; ++k) s = chain.hold(0.01, 1.0);
-  EXPECT_LT((s.told.angle - before.wanted.angle).norm(), 1e-6);
-  EXPECT_LT(s.told.rate.norm(), 1e-6);
+  EXPECT_LT((s.ordered.angle - before.desired.angle).norm(), 1e-6);
+  EXPECT_LT(s.ordered.rate.norm(), 1e-6);
 }
 
 TEST(CueingChain, BrakesToRestAsFastAsItsLimitsAllow) {
@@ -99,7 +99,7 @@ TEST(CueingChain, BrakesToRestAsFastAsItsLimitsAllow) {
   do {
     s = chain.brake(0.005);
     time += 0.005;
-  } while (s.told.rate.norm() + s.told.velocity.norm() > 0.0 && time < 2.0);
+  } while (s.ordered.rate.norm() + s.ordered.velocity.norm() > 0.0 && time < 2.0);
   // From rate v and acceleration a: the jerk's way there and back, and the rate itself by the most acceleration.
   EXPECT_LT(time, 3.0 * limits.acceleration / limits.jerk + std::abs(pitch.rate) / limits.acceleration + 0.02);
   const PlatformState rest = chain.guard().state();
@@ -115,9 +115,9 @@ TEST(CueingChain, BeginsAgainFromWhereThePlatformIs) {
   // With no share at first, as after an emergency stop: it stays, and then returns to its neutral pose gently.
   chain.restart(driving(20.0), 0.0);
   CueingStep s = chain.hold(0.01, 0.0);
-  EXPECT_LT((s.wanted.angle - rest.angle).norm(), 0.02 * kDegree);
+  EXPECT_LT((s.desired.angle - rest.angle).norm(), 0.02 * kDegree);
   for (int k = 0; k < 800; ++k) s = chain.hold(0.01, 0.0);
-  EXPECT_LT(s.told.angle.norm(), 1e-4);
+  EXPECT_LT(s.ordered.angle.norm(), 1e-4);
 }
 
 TEST(CueingChain, ACopyGoesOnAlike) {
@@ -140,7 +140,7 @@ TEST(DrivePlatform, GivesAStepForEverySample) {
   ASSERT_EQ(run.steps.size(), drive.size());
   ASSERT_EQ(run.rider.size(), drive.size());
   EXPECT_EQ(run.rider.back().time, drive.back().time);
-  EXPECT_EQ(run.steps.back().told.shift.x(), 0.0);  // there is no surge
+  EXPECT_EQ(run.steps.back().ordered.shift.x(), 0.0);  // there is no surge
 }
 
 }  // namespace

@@ -41,8 +41,8 @@ TEST(AxisGuard, FollowsWhatTheLimitsAllowWithoutDelay) {
     AxisGuard guard(roll());
     double worst = 0.0;
     for (double t = step; t < 10.0; t += step) {
-      const double wanted = 8.0 * kDegree * std::pow(std::sin(2.0 * t), 3);
-      worst = std::max(worst, std::abs(guard.step(wanted, step).position - wanted));
+      const double desired = 8.0 * kDegree * std::pow(std::sin(2.0 * t), 3);
+      worst = std::max(worst, std::abs(guard.step(desired, step).position - desired));
       if (step > 0.01) continue;  // corners between coarser steps are rounded off by the jerk
       ASSERT_FALSE(guard.limited()) << t;
     }
@@ -96,15 +96,15 @@ TEST(AxisGuard, ComesToRestAfterStepsOfAnySize) {
       for (const double step : {0.001, 0.01, 1.0 / 60.0}) {
         AxisGuard guard(limits);
         guard.reset(0.0);
-        const double wanted = share * limits.highest;
+        const double desired = share * limits.highest;
         double overshoot = 0.0, late = 0.0;
         for (double t = 0.0; t < 3.0; t += step) {
-          const double off = guard.step(wanted, step).position - wanted;
+          const double off = guard.step(desired, step).position - desired;
           overshoot = std::max(overshoot, off);
           if (t > 1.5) late = std::max(late, std::abs(off));
         }
-        EXPECT_LT(late, 1e-3 * wanted) << name_of(which) << " " << share << " " << step;
-        EXPECT_LT(overshoot, 0.15 * wanted + 0.005 * limits.highest) << name_of(which) << " " << share << " " << step;
+        EXPECT_LT(late, 1e-3 * desired) << name_of(which) << " " << share << " " << step;
+        EXPECT_LT(overshoot, 0.15 * desired + 0.005 * limits.highest) << name_of(which) << " " << share << " " << step;
       }
     }
   }
@@ -129,7 +129,7 @@ TEST(AxisGuard, StopsInAGap) {
   EXPECT_EQ(after.rate, 0.0);
   EXPECT_EQ(after.acceleration, 0.0);
   EXPECT_GT(after.position, moving.position);
-  // What is wanted is elsewhere then: no jump.
+  // What is desired is elsewhere then: no jump.
   expect_inside(after, guard.step(0.0, 0.01), 0.01, roll());
 }
 
@@ -180,24 +180,24 @@ void run_adversary(long steps, unsigned seed) {
   };
   AxisGuard guard(any_limits());
   std::vector<AxisGuard> others(4, guard);
-  double wanted = 0.0, drift = 0.0;
+  double desired = 0.0, drift = 0.0;
   for (long k = 0; k < steps; ++k) {
     const double what = uniform(random);
     if (what < 0.3) drift = 3.0 * normal(random);
     if (what < 0.5) {
-      wanted += 0.01 * drift;
+      desired += 0.01 * drift;
     } else if (what < 0.6) {
-      wanted = 0.7 * normal(random);
+      desired = 0.7 * normal(random);
     } else if (what < 0.62) {
-      wanted = 1e30 * normal(random);
+      desired = 1e30 * normal(random);
     } else if (what < 0.64) {
-      wanted = kNaN;
+      desired = kNaN;
     } else if (what < 0.66) {
-      wanted = what < 0.65 ? kInfinity : -kInfinity;
+      desired = what < 0.65 ? kInfinity : -kInfinity;
     } else if (what < 0.7) {
-      wanted = 0.1 * normal(random);
+      desired = 0.1 * normal(random);
     }
-    if (!(std::abs(wanted) < 10.0) && what > 0.7) wanted = 0.0;
+    if (!(std::abs(desired) < 10.0) && what > 0.7) desired = 0.0;
     double step = 0.01;
     const double when = uniform(random);
     if (when < 0.2) step = 0.007 + 0.024 * uniform(random);
@@ -213,7 +213,7 @@ void run_adversary(long steps, unsigned seed) {
     }
     const AxisState before = guard.state();
     const AxisLimits in_force_before = guard.limits();
-    const AxisState after = guard.step(wanted, step);
+    const AxisState after = guard.step(desired, step);
     // Either those before or those that were taken over: the axis is within both at the change.
     AxisLimits limits = guard.limits();
     limits.jerk = std::max(limits.jerk, in_force_before.jerk);

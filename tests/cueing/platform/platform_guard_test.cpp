@@ -20,11 +20,11 @@ TEST(PlatformGuard, LeadsEachAxisAsItsOwnGuardAndHoldsTheOthers) {
   (void)guard.reset();
   (void)heave.reset(0.0);
   for (int k = 0; k < 400; ++k) {
-    PlatformCommand wanted;
-    wanted.shift = {0.3, -0.2, 0.08 * std::sin(0.03 * k)};
-    wanted.angle = {0.2, k < 200 ? 0.1 : 5.0, 0.1};
-    const PlatformState s = guard.step(wanted, 0.01);
-    const AxisState alone = heave.step(wanted.shift.z(), 0.01);
+    PlatformCommand desired;
+    desired.shift = {0.3, -0.2, 0.08 * std::sin(0.03 * k)};
+    desired.angle = {0.2, k < 200 ? 0.1 : 5.0, 0.1};
+    const PlatformState s = guard.step(desired, 0.01);
+    const AxisState alone = heave.step(desired.shift.z(), 0.01);
     ASSERT_EQ(s.shift.z(), alone.position);
     ASSERT_EQ(s.velocity.z(), alone.rate);
     for (const PlatformAxis still :

@@ -31,13 +31,13 @@ TEST(PlatformSimulator, FollowsASineAsASecondOrderSystemBehindADelay) {
   p.actuators = {.omega = 25.0, .zeta = 0.8, .delay = 0.02};
   PlatformSimulator simulator(p);
   const double omega = 6.0, step = 0.002, size = 5.0 * kDegree;
-  PlatformState told;
-  simulator.reset(told);
+  PlatformState ordered;
+  simulator.reset(ordered);
   const std::complex<double> s(0.0, omega);
   const std::complex<double> gain = 625.0 / (s * s + 40.0 * s + 625.0) * std::exp(-s * 0.02);
   for (double t = step; t < 5.0; t += step) {
-    told.angle.x() = size * std::sin(omega * t);
-    const PlatformState is = simulator.step(told, step);
+    ordered.angle.x() = size * std::sin(omega * t);
+    const PlatformState is = simulator.step(ordered, step);
     if (t < 2.0) continue;
     const std::complex<double> wave = size * gain * std::exp(s * t);
     ASSERT_NEAR(is.angle.x(), wave.imag(), 2e-5 * size);
@@ -51,11 +51,11 @@ TEST(PlatformSimulator, ComesToRestWhereItIsToldOrWhereItWasMeasuredTo) {
        {std::tuple("three_axis", 15.0, 15.0), std::tuple("three_axis_measured", 15.0, 14.0),
         std::tuple("three_axis_measured", 20.0, 18.5), std::tuple("three_axis_measured", -15.0, -14.0)}) {
     PlatformSimulator simulator(built_in_platform(name));
-    PlatformState told;
-    simulator.reset(told);
-    told.angle.y() = angle * kDegree;
+    PlatformState ordered;
+    simulator.reset(ordered);
+    ordered.angle.y() = angle * kDegree;
     PlatformState is;
-    for (int k = 0; k < 1000; ++k) is = simulator.step(told, 0.01);
+    for (int k = 0; k < 1000; ++k) is = simulator.step(ordered, 0.01);
     EXPECT_NEAR(is.angle.y(), expected * kDegree, 1e-9) << name;
     EXPECT_LT(is.rate.norm() + is.angular_acceleration.norm(), 1e-6);
   }
@@ -67,16 +67,16 @@ TEST(PlatformSimulator, KeepsEveryLegWithinItsStrokeWhereAxesTogetherAskForMore)
   PlatformSimulator simulator(p);
   std::mt19937 random(5);
   std::uniform_int_distribution<int> side(-1, 1);
-  PlatformCommand wanted;
+  PlatformCommand desired;
   double longest = 0.0, fastest = 0.0;
   for (int k = 0; k < 6000; ++k) {
     if (k % 150 == 0) {
       for (int i = 0; i < 3; ++i) {
-        wanted.shift(i) = side(random);
-        wanted.angle(i) = side(random);
+        desired.shift(i) = side(random);
+        desired.angle(i) = side(random);
       }
     }
-    simulator.step(guard.step(wanted, 0.01), 0.01);
+    simulator.step(guard.step(desired, 0.01), 0.01);
     longest = std::max(longest, simulator.leg_positions().cwiseAbs().maxCoeff());
     fastest = std::max(fastest, simulator.leg_rates().cwiseAbs().maxCoeff());
   }
@@ -87,16 +87,16 @@ TEST(PlatformSimulator, KeepsEveryLegWithinItsStrokeWhereAxesTogetherAskForMore)
 
 TEST(PlatformSimulator, ACopyGoesOnAlike) {
   PlatformSimulator simulator(built_in_platform("hexapod"));
-  PlatformState told;
-  simulator.reset(told);
+  PlatformState ordered;
+  simulator.reset(ordered);
   for (int k = 0; k < 50; ++k) {
-    told.shift.x() = 0.002 * k;
-    simulator.step(told, 0.013);
+    ordered.shift.x() = 0.002 * k;
+    simulator.step(ordered, 0.013);
   }
   PlatformSimulator copy = simulator;
   for (int k = 0; k < 50; ++k) {
-    told.angle.z() = 0.003 * k;
-    ASSERT_EQ(simulator.step(told, 0.02).shift, copy.step(told, 0.02).shift);
+    ordered.angle.z() = 0.003 * k;
+    ASSERT_EQ(simulator.step(ordered, 0.02).shift, copy.step(ordered, 0.02).shift);
     ASSERT_EQ(simulator.state().angle, copy.state().angle);
   }
 }

@@ -178,7 +178,7 @@ TEST(LapForesight, BearsAnyPosition) {
     if (k % 3 == 0) s.position.x() = wild[k % 5];
     if (k % 7 == 0) s.position.y() = wild[(k / 7) % 5];
     const CueingStep step = chain.step(s, k % 11 == 0 ? std::nan("") : 0.01);
-    ASSERT_TRUE(step.told.angle.allFinite()) << k;
+    ASSERT_TRUE(step.ordered.angle.allFinite()) << k;
   }
 }
 

@@ -245,9 +245,9 @@ void run_adversary(const std::string& name, const Platform& platform, long steps
       washout->reset(s);
     }
     const PlatformState before = guard.state();
-    const PlatformCommand wanted = washout->step(s, step);
-    ASSERT_TRUE(wanted.angle.allFinite() && wanted.shift.allFinite()) << "step " << k << " of seed " << seed;
-    const PlatformState after = guard.step(wanted, step);
+    const PlatformCommand desired = washout->step(s, step);
+    ASSERT_TRUE(desired.angle.allFinite() && desired.shift.allFinite()) << "step " << k << " of seed " << seed;
+    const PlatformState after = guard.step(desired, step);
     const double time = step > 0.0 ? step : 0.0;
     for (std::size_t i = 0; i < kPlatformAxes; ++i) {
       const AxisLimits& limits = platform.limits.axes[i];

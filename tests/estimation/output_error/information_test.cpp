@@ -27,7 +27,7 @@ std::vector<VectorXd> random_inputs(int segments) {
 }
 
 // What an estimate of three segments says of its intervals, from two of them and what the third would add.
-TEST(Information, OfAFurtherSegmentForetellsTheCovarianceWithIt) {
+TEST(Information, OfAFurtherSegmentPredictsTheCovarianceWithIt) {
   const std::vector<VectorXd> u = random_inputs(3);
   FirstOrder all(u, 0.1), two({u[0], u[1]}, 0.1), third({u[2]}, 0.1);
   for (FirstOrder* model : {&all, &two, &third}) model->unknowns[1].prior_sigma = 0.01;

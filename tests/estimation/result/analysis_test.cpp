@@ -77,5 +77,34 @@ TEST(Marked, SaysWhichParameterARowObjectsTo) {
   EXPECT_EQ(marked(found, GroupVerdict::kRejected)[0].status, ParameterStatus::kRejected);
 }
 
+// Neither the chosen method's own parameters, without what is not known of the body, nor those of one that failed.
+TEST(EstimateOf, HasAGroupWithWhatOtherMethodsGave) {
+  const ParameterGroup group{.name = "car",
+                             .verdict = GroupVerdict::kEffective,
+                             .reason = "predicts only",
+                             .parameters = {{.name = "C_f", .value = 5.0}},
+                             .method = "output error",
+                             .methods = {{"OLS", true, "", {{.name = "C_f", .value = 4.0}}},
+                                         {"TLS", false, "", {{.name = "C_f", .value = 9.0}}},
+                                         {"output error", true, "", {{.name = "C_f", .value = 5.0}}}},
+                             .evidence = {{.about = "C_f", .outcome = Outcome::kCare}},
+                             .judgement = {.prediction = {.grade = Grade::kWithCare}}};
+  const std::vector<PredictedQuantity> predictions{
+      {.name = "yaw_rate", .unit = "rad/s", .fit = {.rmse = 0.1, .r2 = 0.9}}};
+  const Estimate estimate = estimate_of(group, Eigen::MatrixXd::Constant(1, 1, 0.25), predictions);
+  EXPECT_EQ(estimate.subject, "car");
+  EXPECT_EQ(estimate.method, "output error");
+  EXPECT_EQ(estimate.verdict, "predicts only");
+  ASSERT_EQ(estimate.parameters.size(), 1u);
+  EXPECT_EQ(estimate.covariance(0, 0), 0.25);
+  ASSERT_EQ(estimate.other_methods.size(), 1u);
+  EXPECT_EQ(estimate.other_methods[0].method, "OLS");
+  EXPECT_EQ(estimate.other_methods[0].parameter.value, 4.0);
+  EXPECT_EQ(estimate.validation.at("yaw_rate").r2, 0.9);
+  EXPECT_EQ(estimate.validation.at("yaw_rate").unit, "rad/s");
+  ASSERT_EQ(estimate.evidence.size(), 1u);
+  EXPECT_EQ(estimate.judgement.prediction.grade, Grade::kWithCare);
+}
+
 }  // namespace
 }  // namespace veridyn::estimation

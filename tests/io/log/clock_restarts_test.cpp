@@ -78,7 +78,7 @@ TEST(ClockRestarts, AreNotStampsThatAreOffNorMessagesOfAnotherClock) {
   std::vector<double> hourly;
   for (int day = 0; day < 2; ++day)
     for (int i = 0; i < 24; ++i) hourly.push_back(3600.0 * i);
-  EXPECT_THAT(restarts_of(hourly), IsEmpty()) << "stamps that never follow each other are believed to be nothing";
+  EXPECT_THAT(restarts_of(hourly), IsEmpty()) << "stamps that never follow each other are taken for nothing";
 }
 
 TEST(ClockRestarts, AtTheBeginningDamagedStampsAreNoClock) {

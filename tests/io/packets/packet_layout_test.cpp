@@ -72,12 +72,12 @@ TEST(PacketLayout, SaysWhatIsWrongAndWhere) {
     return "[[data.packet.field]]\nname = \"" + std::string(name) + "\"\noffset = " + std::to_string(offset) +
            "\ntype = \"" + type + "\"\n";
   };
-  wrong("[data.packet]\nsize = 0\n", "rig.toml:2: data.packet.size: is 0; a packet has 1 to 65507 bytes");
+  wrong("[data.packet]\nsize = 0\n", "rig.toml:2: data.packet.size: = 0 must be from 1 to 65507");
   wrong("[data.packet]\nsize = 16\n", "is missing: a packet has fields");
   wrong("[data.packet]\nsize = 16\n" + field("a", 0, "f32"), "without 'time'");
   wrong("[data.packet]\nsize = 16\n" + kTime + field("a", 6, "f32"), "'a' at 6 overlaps 'time'");
   wrong("[data.packet]\nsize = 16\n" + kTime + field("a", 13, "f32"), "'a' ends at 17, the packet at 16");
-  wrong("[data.packet]\nsize = 16\n" + kTime + field("a", 16, "u8"), "is 16; the packet has 16 bytes");
+  wrong("[data.packet]\nsize = 16\n" + kTime + field("a", 16, "u8"), "'a' ends at 17, the packet at 16");
   wrong("[data.packet]\nsize = 16\n" + kTime + field("time", 8, "u8"), "'time' is there twice");
   wrong("[data.packet]\nsize = 16\n" + kTime + field("a", 8, "f16"), "'f16' is not one of f32, f64");
   wrong("[data.packet]\nsize = 16\nbegins_with = \"RIG-ONE\"\n" + kTime, "overlaps the first 7 bytes");

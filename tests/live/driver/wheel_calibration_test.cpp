@@ -146,9 +146,9 @@ TEST(WheelCalibration, ThatCannotBeIsRefusedWithFileLineAndKey) {
             "wheel.toml:3: steering.axis: 'ABS_Q' is no axis; say ABS_X, ABS_WHEEL, "
             "ABS_GAS, ... or ABS_ "
             "and its number");
-  EXPECT_EQ(with("lock = 7.854", "lock = -1"), "wheel.toml:7: steering.lock: is -1 rad; must be > 0 and <= 100");
-  EXPECT_EQ(with("deadband = 0.005", "deadband = 0.9"),
-            "wheel.toml:8: steering.deadband: is 0.9; must be from 0 to 0.5");
+  EXPECT_EQ(with("lock = 7.854", "lock = -1"),
+            "wheel.toml:7: steering.lock: = -1 rad must be above 0 and at most 100 rad");
+  EXPECT_EQ(with("deadband = 0.005", "deadband = 0.9"), "wheel.toml:8: steering.deadband: = 0.9 must be from 0 to 0.5");
   EXPECT_EQ(with("pressed = 150", "pressed = 0"),
             "wheel.toml:12: throttle.pressed: is 0, where the pedal is released: it "
             "does not move");

@@ -17,7 +17,7 @@ TEST(StatusJson, SaysHowMuchOfThePlatformIsUsedAndWhatIsFelt) {
   RigStatus status;
   const auto pitch = cueing::PlatformAxis::kPitch;
   const cueing::AxisLimits& limits = study.cueing.platform.limits[pitch];
-  set_axis(status.step.cueing.told, pitch,
+  set_axis(status.step.cueing.ordered, pitch,
            {.position = 0.75 * limits.lowest, .rate = -0.5 * limits.rate, .acceleration = 0.0});
   status.step.motion.emplace();
   status.step.motion->sample.frame = Frame::kFrd;

@@ -18,7 +18,7 @@ namespace {
 using cueing::PlatformAxis;
 using ::testing::HasSubstr;
 
-/// A sweep on the platform simulator, which is stepped ten times as fast as it is told, with noise of its encoders.
+/// A sweep on the platform simulator, which is stepped ten times as fast as orders come, with noise of its encoders.
 ToldAndReached swept(const cueing::Platform& platform, PlatformAxis axis, double noise) {
   cueing::PlatformGuard guard(platform.limits);
   cueing::PlatformSimulator simulator(platform);
@@ -32,9 +32,9 @@ ToldAndReached swept(const cueing::Platform& platform, PlatformAxis axis, double
     set_axis(
         to, axis,
         {.position = wanted_position(signal, platform.limits[axis], k * m.step), .rate = 0.0, .acceleration = 0.0});
-    const cueing::PlatformState told = guard.step(to, k == 0 ? 0.0 : m.step);
-    m.told.push_back(cueing::axis(told, axis).position);
-    m.reached.push_back(cueing::axis(simulator.step(told, k == 0 ? 0.0 : m.step), axis).position +
+    const cueing::PlatformState ordered = guard.step(to, k == 0 ? 0.0 : m.step);
+    m.ordered.push_back(cueing::axis(ordered, axis).position);
+    m.reached.push_back(cueing::axis(simulator.step(ordered, k == 0 ? 0.0 : m.step), axis).position +
                         noise * random.normal());
   }
   return m;
@@ -90,10 +90,10 @@ TEST(PlatformResponse, SeesWhereAPlatformReachesLess) {
 TEST(PlatformResponse, RefusesWhatSaysNothing) {
   ToldAndReached m;
   EXPECT_THAT(why([&] { static_cast<void>(fit_response(m)); }), HasSubstr("0 answers; takes 200 at least"));
-  m.told.assign(300, 0.0);
+  m.ordered.assign(300, 0.0);
   m.reached.assign(300, 0.0);
-  EXPECT_THAT(why([&] { static_cast<void>(fit_response(m)); }), HasSubstr("was told nothing"));
-  for (std::size_t k = 0; k < 300; ++k) m.told[k] = 0.1 * std::sin(0.1 * static_cast<double>(k));
+  EXPECT_THAT(why([&] { static_cast<void>(fit_response(m)); }), HasSubstr("had no order"));
+  for (std::size_t k = 0; k < 300; ++k) m.ordered[k] = 0.1 * std::sin(0.1 * static_cast<double>(k));
   EXPECT_THAT(why([&] { static_cast<void>(fit_response(m)); }), HasSubstr("does not move"));
   m.reached[7] = kNaN;
   EXPECT_THAT(why([&] { static_cast<void>(fit_response(m)); }), HasSubstr("not finite"));

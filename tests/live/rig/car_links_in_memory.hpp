@@ -51,7 +51,7 @@ inline std::vector<WheelEvent> weaving_driver(double duration) {
   return events;
 }
 
-/// Car, line, driver and platform instead of devices and sockets, on a time that is told.
+/// Car, line, driver and platform instead of devices and sockets, on a time that is given.
 class CarLinksInMemory final : public LiveLinks {
  public:
   CarLinksInMemory(const LiveStudy& study, std::vector<WheelEvent> driver, double flips = 0.0)

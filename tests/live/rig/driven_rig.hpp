@@ -10,7 +10,7 @@
 
 namespace veridyn::live::test {
 
-/// A rig between a virtual vehicle and a virtual platform, on a time that is told.
+/// A rig between a virtual vehicle and a virtual platform, on a time that is given.
 class DrivenRig {
  public:
   explicit DrivenRig(const LiveStudy& study, const VirtualVehicleOptions& vehicle = {}, std::uint32_t session = 1)

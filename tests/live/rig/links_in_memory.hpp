@@ -17,7 +17,7 @@
 
 namespace veridyn::live::test {
 
-/// A virtual vehicle and a virtual platform instead of sockets, on a time that is told. Nothing is allocated.
+/// A virtual vehicle and a virtual platform instead of sockets, on a time that is given. Nothing is allocated.
 class MemoryLinks final : public LiveLinks {
  public:
   explicit MemoryLinks(const LiveStudy& study, const VirtualVehicleOptions& options = {})

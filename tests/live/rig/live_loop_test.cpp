@@ -36,7 +36,7 @@ TEST_F(LiveLoopTest, StepsAtItsRateAndSendsWhatTheRigSays) {
   EXPECT_EQ(accepted + status.packets[PacketStatus::kUnrecognised], 1000U);
   EXPECT_GT(accepted, 985U);
   EXPECT_EQ(status.times.steps, 1000U);
-  // On a time that is told nothing takes any: packets wait for the next deadline, here 10 ms at most.
+  // On a time that is given nothing takes any: packets wait for the next deadline, here 10 ms at most.
   EXPECT_LE(status.times.receive_to_send.largest(), 10 * kMillisecond);
   std::vector<Telemetry> motions;
   control.take_motions(motions);

@@ -17,7 +17,7 @@ using test::rig_study;
 double largest_position(const RigStep& s) {
   double most = 0.0;
   for (std::size_t i = 0; i < cueing::kPlatformAxes; ++i)
-    most = std::max(most, std::abs(axis(s.cueing.told, static_cast<PlatformAxis>(i)).position));
+    most = std::max(most, std::abs(axis(s.cueing.ordered, static_cast<PlatformAxis>(i)).position));
   return most;
 }
 
@@ -77,8 +77,8 @@ TEST(LiveRig, GivesThePlatformWhatTheReplayedDriveGivesIt) {
   const cueing::CueingRun run = cueing::drive_platform(samples, *washout, study.cueing.platform, quiet);
   double worst = 0.0;
   for (std::size_t k = 1500; k < run.steps.size(); ++k) {
-    worst = std::max(worst, (run.steps[k].told.angle - steps[k + 10].cueing.told.angle).norm());
-    worst = std::max(worst, (run.steps[k].told.shift - steps[k + 10].cueing.told.shift).norm());
+    worst = std::max(worst, (run.steps[k].ordered.angle - steps[k + 10].cueing.ordered.angle).norm());
+    worst = std::max(worst, (run.steps[k].ordered.shift - steps[k + 10].cueing.ordered.shift).norm());
   }
   // What is left after 15 s of how differently they began.
   EXPECT_LT(worst, 2e-3);
@@ -289,7 +289,7 @@ TEST(LiveRig, AnotherAlgorithmTakesOverFromWhereThePlatformIs) {
   EXPECT_NE(old, nullptr);
   double before = -1.0, most = 0.0;
   r.run(5.0, [&](const RigStep& s) {
-    const double at = s.cueing.told.angle.y();
+    const double at = s.cueing.ordered.angle.y();
     if (before != -1.0) most = std::max(most, std::abs(at - before));
     before = at;
   });

@@ -4,7 +4,7 @@
 
 namespace veridyn::live {
 
-/// A clock that stands until it is told: sleeping until a time sets it to that time.
+/// A clock that stands until it is set: sleeping until a time sets it to that time.
 class SetClock final : public Clock {
  public:
   explicit SetClock(Nanoseconds start = 0) : now_(start) {}

@@ -36,7 +36,7 @@ const std::string kFourUnknowns =
     "[[parameter]]\nmuscles = [\"biceps_long\"]\nfields = [\"max_isometric_force\"]\nbounds = \"20 %\"\n"
     "[[parameter]]\nmuscles = [\"biceps_long\"]\nfields = [\"tendon_slack_length\"]\nbounds = \"20 %\"\n";
 
-struct Foretold {
+struct Forecast {
   TaskAdvice advice;
   double then = 0.0;  ///< the widest interval with the advised task
   /// Lessening of the widest interval over what was predicted.
@@ -58,11 +58,11 @@ double widest(const TaskStudy& study, const MuscleAnalysis& a, const TaskAdvice&
 }
 
 /// Takes the advice and estimates again.
-Foretold taken(int seed, std::vector<int> tasks, const std::string& parameters) {
+Forecast taken(int seed, std::vector<int> tasks, const std::string& parameters) {
   Progress progress;
   const TaskStudy before = advice_study(seed, fmt::format("[{}]", fmt::join(tasks, ",")), parameters);
   const MuscleAnalysis a = identify(before, progress);
-  Foretold f{.advice = a.advice};
+  Forecast f{.advice = a.advice};
   if (f.advice.tasks.empty()) throw std::runtime_error("nothing advised: " + f.advice.withheld);
   EXPECT_NEAR(f.advice.now.share, widest(before, a, a.advice), 1e-12);
   tasks.push_back(f.advice.tasks.front().number);
@@ -73,7 +73,7 @@ Foretold taken(int seed, std::vector<int> tasks, const std::string& parameters) 
 }
 
 void check_forecast(int seed) {
-  const Foretold f = taken(seed, {8, 12, 29}, kFourUnknowns);
+  const Forecast f = taken(seed, {8, 12, 29}, kFourUnknowns);
   const AdvisedTask& best = f.advice.tasks.front();
   EXPECT_LT(best.then.share, 0.9 * f.advice.now.share);
   EXPECT_NEAR(f.ratio(), 1.0, 0.2) << best.name << ": " << f.advice.now.share << " -> " << best.then.share << ", was "
@@ -86,7 +86,7 @@ void check_forecast(int seed) {
   }
 }
 
-TEST(TaskAdvice, ATaskLessensTheWidestIntervalByWhatWasForetold) { check_forecast(1); }
+TEST(TaskAdvice, ATaskLessensTheWidestIntervalByWhatWasPredicted) { check_forecast(1); }
 
 TEST(TaskAdvice, IsForTheModelsTasksAndWithheldWhereTheModelIsWrong) {
   EXPECT_TRUE(advice_study(1, "[8]", kFourUnknowns).advice);
@@ -115,7 +115,7 @@ TEST(TaskAdvice, IsForTheModelsTasksAndWithheldWhereTheModelIsWrong) {
 TEST(TaskAdviceSoak, OfManyPersons) {
   std::vector<double> few, all;
   for (int seed = 1; seed <= 10; ++seed) {
-    const Foretold f = taken(seed, {8, 12, 29}, kFourUnknowns), g = taken(seed, {8, 12, 29, 33}, "");
+    const Forecast f = taken(seed, {8, 12, 29}, kFourUnknowns), g = taken(seed, {8, 12, 29, 33}, "");
     few.push_back(f.ratio());
     all.push_back(g.then / g.advice.tasks.front().then.share);
     fmt::print(

@@ -120,8 +120,8 @@ struct Reconstruction {
 /// one, of ground velocity and airspeed one. Uses what there is of these, of `vel_down`, `yaw`, `dynamic_pressure` (or
 /// else `airspeed`), `alpha`, `beta`, and for the air density `air_density`, `static_pressure`, `air_temperature`,
 /// `alt`. `quantities` and the sigma channels show what is then not known:
-/// - without a ground velocity, wind and motion over the ground cannot be told apart: the velocity is the one through
-/// the slow
+/// - without a ground velocity, wind and motion over the ground are not distinguishable: the velocity is the one
+/// through the slow
 ///   wind, and there are no channels of either;
 /// - without heading it follows from the ground velocity in manoeuvres; without both there is no channel `yaw`;
 /// - without attitude it follows from gyro, accelerometer and ground velocity, with the gyro's biases as states;

@@ -95,7 +95,7 @@ NeighbourCorrelation neighbour_correlation(const CalibrationPoints& points,
 }
 
 std::vector<std::size_t> outlying_points(std::span<const CalibrationResidual> residuals) {
-  constexpr double kFar = 6.0;
+  constexpr double kOutlierDeviations = 6.0;
   std::vector<std::size_t> off;
   if (residuals.size() < 8) return off;
   std::vector<double> coordinates;
@@ -104,7 +104,7 @@ std::vector<std::size_t> outlying_points(std::span<const CalibrationResidual> re
     coordinates.push_back(r.image(1));
   }
   // Below a thousandth of a pixel nothing was measured: that is rounding.
-  const double limit = kFar * std::max(numerics::robust_sd(coordinates), 1e-3);
+  const double limit = kOutlierDeviations * std::max(numerics::robust_sd(coordinates), 1e-3);
   for (std::size_t i = 0; i < residuals.size(); ++i)
     if (!(residuals[i].image.cwiseAbs().maxCoeff() <= limit)) off.push_back(i);
   std::sort(off.begin(), off.end(),

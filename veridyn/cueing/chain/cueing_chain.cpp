@@ -12,7 +12,7 @@ CueingChain::CueingChain(const CueingChain& other)
     : washout_(other.washout_->clone()),
       guard_(other.guard_),
       simulator_(other.simulator_),
-      wanted_(other.wanted_),
+      desired_(other.desired_),
       joined_at_(other.joined_at_),
       since_joined_(other.since_joined_) {}
 
@@ -20,9 +20,9 @@ CueingStep CueingChain::reset(const recording::MotionSample& sample) {
   joined_at_ = {};
   since_joined_ = 0.0;
   CueingStep s;
-  s.wanted = wanted_ = washout_->reset(sample);
-  s.told = guard_.reset(s.wanted);
-  s.reached = simulator_.reset(s.told);
+  s.desired = desired_ = washout_->reset(sample);
+  s.ordered = guard_.reset(s.desired);
+  s.reached = simulator_.reset(s.ordered);
   return s;
 }
 
@@ -34,15 +34,15 @@ std::unique_ptr<Washout> CueingChain::take_over(std::unique_ptr<Washout> washout
 }
 
 void CueingChain::restart(const recording::MotionSample& sample, double share) {
-  wanted_ = washout_->reset(sample);
+  desired_ = washout_->reset(sample);
   const PlatformState at = guard_.state();
-  joined_at_.shift = at.shift - share * wanted_.shift;
-  joined_at_.angle = at.angle - share * wanted_.angle;
+  joined_at_.shift = at.shift - share * desired_.shift;
+  joined_at_.angle = at.angle - share * desired_.angle;
   since_joined_ = 0.0;
 }
 
 CueingStep CueingChain::step(const recording::MotionSample& sample, double step, double share) {
-  wanted_ = washout_->step(sample, step);
+  desired_ = washout_->step(sample, step);
   return follow(step, share);
 }
 
@@ -50,9 +50,9 @@ CueingStep CueingChain::hold(double step, double share) { return follow(step, sh
 
 CueingStep CueingChain::brake(double step) {
   CueingStep s;
-  s.told = guard_.brake(step);
-  s.wanted = s.told;
-  s.reached = simulator_.step(s.told, step);
+  s.ordered = guard_.brake(step);
+  s.desired = s.ordered;
+  s.reached = simulator_.step(s.ordered, step);
   if (simulator_.leg_rates().size() > 0) s.leg_speed = simulator_.leg_rates().cwiseAbs().maxCoeff();
   return s;
 }
@@ -62,12 +62,12 @@ CueingStep CueingChain::follow(double step, double share) {
   CueingStep s;
   if (step > 0.0 && std::isfinite(step)) since_joined_ += step;
   const double t = since_joined_ / kJoins, left = (1.0 + t) * std::exp(-t);
-  s.wanted = wanted_;
-  s.wanted.shift = share * wanted_.shift + left * joined_at_.shift;
-  s.wanted.angle = share * wanted_.angle + left * joined_at_.angle;
-  s.told = guard_.step(s.wanted, step);
+  s.desired = desired_;
+  s.desired.shift = share * desired_.shift + left * joined_at_.shift;
+  s.desired.angle = share * desired_.angle + left * joined_at_.angle;
+  s.ordered = guard_.step(s.desired, step);
   s.limited = guard_.limited();
-  s.reached = simulator_.step(s.told, step);
+  s.reached = simulator_.step(s.ordered, step);
   if (simulator_.leg_rates().size() > 0) s.leg_speed = simulator_.leg_rates().cwiseAbs().maxCoeff();
   return s;
 }

@@ -14,8 +14,8 @@ namespace veridyn::cueing {
 
 /// What became of one sample.
 struct CueingStep {
-  PlatformCommand wanted;                   ///< by the algorithm
-  PlatformState told;                       ///< by the guard
+  PlatformCommand desired;                  ///< by the algorithm
+  PlatformState ordered;                    ///< by the guard
   PlatformState reached;                    ///< by the platform
   std::bitset<kPlatformAxes> limited = {};  ///< axes that the guard held back
   double leg_speed = 0.0;                   ///< of the fastest leg [m/s]; 0 of a platform without
@@ -59,7 +59,7 @@ class CueingChain {
   PlatformGuard guard_;
   PlatformSimulator simulator_;
   /// Leads guard and platform after what the algorithm wants.
-  PlatformCommand wanted_;     ///< last, by the algorithm itself
+  PlatformCommand desired_;    ///< last, by the algorithm itself
   PlatformCommand joined_at_;  ///< by how much the command differed where the algorithm began
   double since_joined_ = 0.0;  ///< [s]
 };

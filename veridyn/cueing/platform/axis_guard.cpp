@@ -110,7 +110,7 @@ AxisGuard::AxisGuard(const AxisLimits& limits) : limits_((check(limits), limits)
 AxisState AxisGuard::reset(double position) {
   take_new_limits();
   state_ = {nearest_inside(std::isfinite(position) ? position : 0.0, limits_), 0.0, 0.0};
-  asked_ = wanted_ = state_.position;
+  asked_ = desired_ = state_.position;
   wanted_rate_ = wanted_acceleration_ = last_step_ = 0.0;
   limited_ = false;
   return state_;
@@ -130,25 +130,25 @@ void AxisGuard::take_new_limits() {
   if (new_limits_) limits_ = *std::exchange(new_limits_, std::nullopt);
 }
 
-AxisState AxisGuard::step(double wanted, double step) {
+AxisState AxisGuard::step(double desired, double step) {
   if (new_limits_ && safe(state_, *new_limits_)) take_new_limits();
-  const double asked = std::isfinite(wanted) ? wanted : asked_;
-  wanted = nearest_inside(std::isfinite(wanted) ? wanted : wanted_, limits_);
+  const double asked = std::isfinite(desired) ? desired : asked_;
+  desired = nearest_inside(std::isfinite(desired) ? desired : desired_, limits_);
   if (!(step > 0.0) || !std::isfinite(step)) step = 0.0;
   if (step == 0.0) return state_;
   asked_ = asked;
   if (step > kLongestStep || new_limits_) {
     if (step > kLongestStep) stop(step);
-    wanted_ = nearest_inside(fastest_stop(state_, limits_).position, new_limits_.value_or(limits_));
+    desired_ = nearest_inside(fastest_stop(state_, limits_).position, new_limits_.value_or(limits_));
     wanted_rate_ = wanted_acceleration_ = 0.0;
     // In a gap nobody knows what was asked for.
-    if (step > kLongestStep) asked_ = wanted_;
+    if (step > kLongestStep) asked_ = desired_;
     limited_ = true;
-    if (step <= kLongestStep) follow(wanted_, step, 0.0, 0.0);
+    if (step <= kLongestStep) follow(desired_, step, 0.0, 0.0);
     last_step_ = step;
     return state_;
   }
-  const double before = wanted_, mean_rate = (wanted - before) / step;
+  const double before = desired_, mean_rate = (desired - before) / step;
   const double between = 0.5 * (step + last_step_);
   const double mean_acceleration = (mean_rate - wanted_rate_) / between;
   const double acceleration = within(mean_acceleration, limits_.acceleration);
@@ -157,31 +157,31 @@ AxisState AxisGuard::step(double wanted, double step) {
   last_step_ = step;
   const double pieces = std::ceil(step / kLongestPiece * (1.0 - 1e-9));
   const double final_rate = mean_rate + 0.5 * acceleration * step;
-  limited_ = wanted != asked || acceleration != mean_acceleration;
+  limited_ = desired != asked || acceleration != mean_acceleration;
   for (double k = 1.0; k <= pieces; ++k) {
     const double left = step * (1.0 - k / pieces);
-    follow(wanted - left * (final_rate - 0.5 * acceleration * left), step / pieces, final_rate - acceleration * left,
+    follow(desired - left * (final_rate - 0.5 * acceleration * left), step / pieces, final_rate - acceleration * left,
            acceleration);
   }
-  wanted_ = wanted;
+  desired_ = desired;
   return state_;
 }
 
 AxisState AxisGuard::brake(double step) {
   if (!(step > 0.0) || !std::isfinite(step)) return state_;
   stop(step);
-  asked_ = wanted_ = nearest_inside(fastest_stop(state_, limits_).position, limits_);
+  asked_ = desired_ = nearest_inside(fastest_stop(state_, limits_).position, limits_);
   wanted_rate_ = wanted_acceleration_ = 0.0;
   last_step_ = step;
   limited_ = false;
   return state_;
 }
 
-AxisGuard::Following AxisGuard::wanted_acceleration(double wanted, double rate, double acceleration,
-                                                    double step) const {
+AxisGuard::Following AxisGuard::desired_acceleration(double desired, double rate, double acceleration,
+                                                     double step) const {
   const AxisLimits& most = new_limits_ ? *new_limits_ : limits_;
   const AxisState then = after(state_, 0.0, step);
-  const double off = wanted - then.position, distance = std::abs(off);
+  const double off = desired - then.position, distance = std::abs(off);
   // Near: a rate in proportion to the distance. Far: one from which the axis can brake on the way.
   constexpr double kNear = kBandwidth / 2.0;
   const double braking = kOfAcceleration * std::min(limits_.acceleration, most.acceleration);
@@ -203,9 +203,9 @@ AxisGuard::Following AxisGuard::wanted_acceleration(double wanted, double rate, 
   return following;
 }
 
-void AxisGuard::follow(double wanted, double step, double rate, double acceleration) {
+void AxisGuard::follow(double desired, double step, double rate, double acceleration) {
   const double most = new_limits_ ? std::min(limits_.jerk, new_limits_->jerk) : limits_.jerk;
-  const Following following = wanted_acceleration(wanted, rate, acceleration, step);
+  const Following following = desired_acceleration(desired, rate, acceleration, step);
   const double needed = (following.acceleration - state_.acceleration) / step;
   const double jerk = within(needed, most);
   limited_ = limited_ || following.limited || std::abs(needed) > most;

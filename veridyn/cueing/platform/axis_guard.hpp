@@ -21,11 +21,11 @@ class AxisGuard {
 
   /// At rest at a position, or at the nearest within the limits.
   AxisState reset(double position);
-  /// @param wanted position; beyond the limits: the limit; not finite: the last one
+  /// @param desired position; beyond the limits: the limit; not finite: the last one
   /// @param step since the last one [s]; below zero or not finite: none. In a gap longer than `kLongestStep` nobody
-  ///   knows what was wanted: the axis stops, and follows again from the next step on.
-  AxisState step(double wanted, double step);
-  /// The fastest way to rest within the limits, whatever was wanted: an emergency stop.
+  ///   knows what was desired: the axis stops, and follows again from the next step on.
+  AxisState step(double desired, double step);
+  /// The fastest way to rest within the limits, whatever was desired: an emergency stop.
   /// @param step as above
   AxisState brake(double step);
   /// Other limits. Those before stay in force until the axis has been led to where the new ones hold.
@@ -41,13 +41,13 @@ class AxisGuard {
   static constexpr double kLongestStep = 0.1;  ///< [s]
 
  private:
-  void follow(double wanted, double step, double rate, double acceleration);
+  void follow(double desired, double step, double rate, double acceleration);
   /// The acceleration by which the axis follows, and whether a limit made it less.
   struct Following {
     double acceleration = 0.0;
     bool limited = false;
   };
-  [[nodiscard]] Following wanted_acceleration(double wanted, double rate, double acceleration, double step) const;
+  [[nodiscard]] Following desired_acceleration(double desired, double rate, double acceleration, double step) const;
   /// The end of a piece of constant jerk, where the piece is allowed.
   [[nodiscard]] std::optional<AxisState> piece(double jerk, double step) const;
   void stop(double step);
@@ -56,8 +56,8 @@ class AxisGuard {
   AxisLimits limits_;
   std::optional<AxisLimits> new_limits_;
   AxisState state_;
-  double asked_ = 0.0;  ///< wanted, before it was brought within the range
-  double wanted_ = 0.0, wanted_rate_ = 0.0, wanted_acceleration_ = 0.0;
+  double asked_ = 0.0;  ///< desired, before it was brought within the range
+  double desired_ = 0.0, wanted_rate_ = 0.0, wanted_acceleration_ = 0.0;
   double last_step_ = 0.0;
   bool limited_ = false;
 };

@@ -26,9 +26,9 @@ struct LegGeometry {
 /// Lengths of the legs from the platform's pose and back.
 class Legs {
  public:
-  static constexpr Eigen::Index kMost = 6;
-  using Values = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMost, 1>;
-  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMost, kMost>;
+  static constexpr Eigen::Index kMaxLegs = 6;
+  using Values = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxLegs, 1>;
+  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxLegs, kMaxLegs>;
 
   /// How long the legs are against neutral, and how that changes [m, s].
   struct Lengths {

@@ -17,9 +17,9 @@ PlatformState PlatformGuard::reset(const PlatformCommand& at) {
   return state();
 }
 
-PlatformState PlatformGuard::step(const PlatformCommand& wanted, double step) {
+PlatformState PlatformGuard::step(const PlatformCommand& desired, double step) {
   for (const PlatformAxis i : kAllPlatformAxes) {
-    if (moves_[i]) axes_[i].step(position(wanted, i), step);
+    if (moves_[i]) axes_[i].step(position(desired, i), step);
   }
   return state();
 }

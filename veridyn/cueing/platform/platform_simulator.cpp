@@ -47,15 +47,15 @@ PlatformSimulator::Actuator PlatformSimulator::actuator(const ActuatorOptions& o
   return a;
 }
 
-AxisState PlatformSimulator::Actuator::reset(double told) {
-  if (guard) told = guard->reset(told).position;
-  delay.reset(told);
-  for (numerics::CausalFilter& f : follows) f.reset(told);
-  return last = {told, 0.0, 0.0};
+AxisState PlatformSimulator::Actuator::reset(double ordered) {
+  if (guard) ordered = guard->reset(ordered).position;
+  delay.reset(ordered);
+  for (numerics::CausalFilter& f : follows) f.reset(ordered);
+  return last = {ordered, 0.0, 0.0};
 }
 
-AxisState PlatformSimulator::Actuator::step(const AxisState& told, double step) {
-  AxisState to = guard ? guard->step(told.position, step) : told;
+AxisState PlatformSimulator::Actuator::step(const AxisState& ordered, double step) {
+  AxisState to = guard ? guard->step(ordered.position, step) : ordered;
   if (at_once) return last = to;
   const double position = delay.step(to.position, step);
   return last = {follows[0].step(position, step), follows[1].step(position, step), follows[2].step(position, step)};
@@ -77,41 +77,41 @@ PlatformSimulator::PlatformSimulator(const Platform& platform) : platform_((plat
   reset({});
 }
 
-PlatformState PlatformSimulator::reset(const PlatformState& told) { return act(told, std::nullopt); }
+PlatformState PlatformSimulator::reset(const PlatformState& ordered) { return act(ordered, std::nullopt); }
 
-PlatformState PlatformSimulator::step(const PlatformState& told, double step) {
-  return act(told, step > 0.0 && std::isfinite(step) ? step : 0.0);
+PlatformState PlatformSimulator::step(const PlatformState& ordered, double step) {
+  return act(ordered, step > 0.0 && std::isfinite(step) ? step : 0.0);
 }
 
-PlatformState PlatformSimulator::act(const PlatformState& told, std::optional<double> step) {
+PlatformState PlatformSimulator::act(const PlatformState& ordered, std::optional<double> step) {
   if (step && *step == 0.0) return state_;
   if (legs_) {
-    before_reach_ = act_on_legs(axes_.empty() ? told : act_on_axes(axes_, told, step), step);
+    before_reach_ = act_on_legs(axes_.empty() ? ordered : act_on_axes(axes_, ordered, step), step);
   } else {
-    before_reach_ = act_on_axes(actuators_, told, step);
+    before_reach_ = act_on_axes(actuators_, ordered, step);
   }
   state_ = at_rest_places(before_reach_);
   return state_;
 }
 
-PlatformState PlatformSimulator::act_on_axes(std::vector<Actuator>& axes, const PlatformState& told,
+PlatformState PlatformSimulator::act_on_axes(std::vector<Actuator>& axes, const PlatformState& ordered,
                                              std::optional<double> step) {
   PlatformState reached;
   for (const PlatformAxis which : kAllPlatformAxes) {
-    const AxisState to = axis(told, which);
+    const AxisState to = axis(ordered, which);
     Actuator& a = axes[static_cast<std::size_t>(which)];
     set_axis(reached, which, step ? a.step(to, *step) : a.reset(to.position));
   }
   return reached;
 }
 
-PlatformState PlatformSimulator::act_on_legs(const PlatformState& told, std::optional<double> step) {
-  const Legs::Lengths wanted = legs_->lengths(told);
-  Legs::Lengths reached = wanted;
+PlatformState PlatformSimulator::act_on_legs(const PlatformState& ordered, std::optional<double> step) {
+  const Legs::Lengths desired = legs_->lengths(ordered);
+  Legs::Lengths reached = desired;
   for (Eigen::Index i = 0; i < legs_->count(); ++i) {
     Actuator& a = actuators_[at(i)];
-    const AxisState to = step ? a.step({wanted.position(i), wanted.rate(i), wanted.acceleration(i)}, *step)
-                              : a.reset(wanted.position(i));
+    const AxisState to = step ? a.step({desired.position(i), desired.rate(i), desired.acceleration(i)}, *step)
+                              : a.reset(desired.position(i));
     reached.position(i) = to.position;
     reached.rate(i) = to.rate;
     reached.acceleration(i) = to.acceleration;

@@ -33,8 +33,8 @@ class PlatformSimulator {
   /// @throws InputError as `Platform::validate`.
   explicit PlatformSimulator(const Platform& platform);
 
-  PlatformState reset(const PlatformState& told);
-  PlatformState step(const PlatformState& told, double step);
+  PlatformState reset(const PlatformState& ordered);
+  PlatformState step(const PlatformState& ordered, double step);
   /// Where it is.
   [[nodiscard]] const PlatformState& state() const { return state_; }
   /// Where its legs are against neutral [m]; none of a platform without.
@@ -50,13 +50,14 @@ class PlatformSimulator {
     std::array<numerics::CausalFilter, 3> follows;  ///< position, rate, acceleration
     bool at_once = false;
     AxisState last = {};
-    AxisState reset(double told);
-    AxisState step(const AxisState& told, double step);
+    AxisState reset(double ordered);
+    AxisState step(const AxisState& ordered, double step);
   };
   [[nodiscard]] Actuator actuator(const ActuatorOptions& options) const;
-  PlatformState act(const PlatformState& told, std::optional<double> step);
-  static PlatformState act_on_axes(std::vector<Actuator>& axes, const PlatformState& told, std::optional<double> step);
-  PlatformState act_on_legs(const PlatformState& told, std::optional<double> step);
+  PlatformState act(const PlatformState& ordered, std::optional<double> step);
+  static PlatformState act_on_axes(std::vector<Actuator>& axes, const PlatformState& ordered,
+                                   std::optional<double> step);
+  PlatformState act_on_legs(const PlatformState& ordered, std::optional<double> step);
   [[nodiscard]] PlatformState at_rest_places(const PlatformState& s) const;
 
   Platform platform_;

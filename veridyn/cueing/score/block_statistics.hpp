@@ -12,7 +12,7 @@ struct Measured {
   double value = 0.0, low = 0.0, high = 0.0;
 };
 
-/// How like two signals are, from sums over blocks of the drive, so that the blocks may be resampled: x(t - lag)
+/// Agreement of two signals, from sums over blocks of the drive, so that the blocks may be resampled: x(t - lag)
 /// against y(t) on an even grid. Neighbouring samples depend on each other; blocks of many seconds hardly do.
 class BlockStatistics {
  public:

@@ -42,14 +42,14 @@ AxisScore axis_score(const CueingRun& run, PlatformAxis which, const AxisLimits&
   AxisScore s;
   double squares = 0.0;
   for (std::size_t k = 0; k < run.steps.size(); ++k) {
-    const AxisState now = axis(run.steps[k].told, which);
+    const AxisState now = axis(run.steps[k].ordered, which);
     s.lowest = std::min(s.lowest, now.position);
     s.highest = std::max(s.highest, now.position);
     s.limited += run.steps[k].limited[static_cast<std::size_t>(which)] ? 1.0 : 0.0;
     s.rate = std::max(s.rate, std::abs(now.rate) / limits.rate);
     if (k == 0) continue;
     const double step = run.vehicle[k].time - run.vehicle[k - 1].time;
-    const double jerk = (now.acceleration - axis(run.steps[k - 1].told, which).acceleration) / step;
+    const double jerk = (now.acceleration - axis(run.steps[k - 1].ordered, which).acceleration) / step;
     squares += jerk * jerk;
   }
   const auto samples = static_cast<double>(run.steps.size());

@@ -41,8 +41,8 @@ AdaptiveWashout::State AdaptiveWashout::Pair::rate(const State& x, const PairedI
   const double p2 = std::clamp(x(kTiltGain), 0.0, d.most_gain);
   const double acceleration = shift_acceleration(x, u, d);
   const double off = std::asin(std::clamp(u(0) / kGravity, -1.0, 1.0)) - x(kTilt);
-  const double wanted = p2 * d.tilt * off, limit = d.shared.tilt_rate;
-  const bool limited = std::abs(wanted) > limit;
+  const double desired = p2 * d.tilt * off, limit = d.shared.tilt_rate;
+  const bool limited = std::abs(desired) > limit;
   const double error = u(0) - acceleration - kGravity * std::sin(x(kTilt));
   // de/dp1, de/dp2
   const double along_shift =
@@ -57,7 +57,7 @@ AdaptiveWashout::State AdaptiveWashout::Pair::rate(const State& x, const PairedI
   State rate;
   rate(kShift) = x(kSpeed);
   rate(kSpeed) = acceleration;
-  rate(kTilt) = std::clamp(wanted, -limit, limit);
+  rate(kTilt) = std::clamp(desired, -limit, limit);
   rate(kShiftGain) = -d.adaptation * gradient_1 / (1.0 + along_shift * along_shift + travel);
   rate(kTiltGain) = -d.adaptation * gradient_2 / (1.0 + along_tilt * along_tilt);
   rate(kShiftAlong) = x(kSpeedAlong);

@@ -9,7 +9,7 @@ class AdaptiveDesign final : public WashoutDesign {
  public:
   SharedKnobs shared;
   double onset = 1.0;         ///< break frequency of surge and sway [rad/s]
-  double tilt = 2.0;          ///< how fast tilt goes where it is wanted [rad/s]
+  double tilt = 2.0;          ///< how fast tilt goes where it is desired [rad/s]
   double adaptation = 2.0;    ///< how fast the gains follow [1/s]
   double shift_weight = 4.0;  ///< of the squared shift over the platform's range, against a force of 1 m/s^2 squared
   double speed_weight = 1.0;  ///< the same of its rate, over range and second

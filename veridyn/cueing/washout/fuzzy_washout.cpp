@@ -61,10 +61,10 @@ PairedOutput FuzzyWashout::Pair::step(const PairedInput& now, const FuzzyDesign&
     const double tilt_used = tilt_range > 0.0 ? last.tilt / tilt_range : 0.0;
     const double tilt_speed = tilt_range > 0.0 ? last.tilt_rate / tilt_range : 0.0;
     const auto outward = [](double used, double speed) { return used < 0.0 ? -speed : speed; };
-    const double wanted =
+    const double desired =
         std::min(fuzzy_gain(std::abs(shift_used), outward(shift_used, shift_speed), d.boldness, d.caution),
                  fuzzy_gain(std::abs(tilt_used), outward(tilt_used, tilt_speed), d.boldness, d.caution));
-    gain = wanted + (gain - wanted) * std::exp(-d.adaptation * *step);
+    gain = desired + (gain - desired) * std::exp(-d.adaptation * *step);
   }
   const ChannelOutput s = shift_range > 0.0 ? shift.step(gain * now(1), step) : ChannelOutput{};
   const ChannelOutput t = tilt.step(cueing::next(low_pass, gain * now(0), step), d.shared.tilt_rate, step);

@@ -220,9 +220,9 @@ std::string PredictiveWashout::account() const {
 }
 
 double PredictiveWashout::planned_force(const Eigen::Vector3d& force, Eigen::Index pair) const {
-  const double wanted = design_.shared.force_gain[1 - pair] * paired_input(force, Eigen::Vector3d::Zero(), pair)(0);
+  const double desired = design_.shared.force_gain[1 - pair] * paired_input(force, Eigen::Vector3d::Zero(), pair)(0);
   // The plan takes g times the angle for the force.
-  return kGravity * std::asin(std::clamp(wanted / kGravity, -1.0, 1.0));
+  return kGravity * std::asin(std::clamp(desired / kGravity, -1.0, 1.0));
 }
 
 void PredictiveWashout::look_ahead(const VehicleMotion& motion, SampleStep step) {

@@ -6,7 +6,7 @@ std::vector<Knob> ReturnDesign::knobs() {
   std::vector<Knob> all = {
       {"onset", "rad/s", {&onset, 1}, "shorter pushes, and less travel", false, 0.3, 6.0},
       {"threshold", "m/s^2", {&threshold, 1}, "the platform returns to its rest position more often", false, 0.05, 0.5},
-      {"home", "rad/s", {&home, 1}, "a platform that comes home sooner", false, 0.5, 5.0},
+      {"home", "rad/s", {&home, 1}, "a platform that returns to neutral sooner", false, 0.5, 5.0},
       {"home_force", "m/s^2", {&home_force, 1}, "a faster return to neutral; above 0.17 it is felt"}};
   shared.add_to(all);
   return all;
@@ -33,19 +33,19 @@ PairedOutput ReturnWashout::Pair::step(const PairedInput& now, const ReturnDesig
     state.setZero();
     input.setZero();
   }
-  // A speed home that half of the force can brake, critically damped close to home; more force only where the speed
+  // A speed back that half of the force can brake, critically damped close to neutral; more force only where the speed
   // would otherwise not end within reach.
-  const auto homeward = [&](double off, double speed) {
+  const auto back = [&](double off, double speed) {
     const double near = d.home_force / home;
-    const double wanted = std::copysign(std::sqrt(near * near + d.home_force * std::abs(off)) - near, -off);
+    const double desired = std::copysign(std::sqrt(near * near + d.home_force * std::abs(off)) - near, -off);
     const double room = std::max(reach - std::copysign(1.0, speed) * off, 0.1 * reach);
     const double force = std::max(d.home_force, speed * speed / (2.0 * room));
-    return std::clamp(2.0 * home * (wanted - speed), -force, force);
+    return std::clamp(2.0 * home * (desired - speed), -force, force);
   };
   const auto shift_acceleration = [&](const Eigen::Vector4d& x, const PairedInput& u) {
     if (reach == 0.0) return 0.0;
     const double share = onset_share(u), passed = u(1) - 2.0 * zeta * onset * x(3) - onset * onset * x(2);
-    return share * (passed + homeward(x(0) - x(2), x(1) - x(3))) + (1.0 - share) * homeward(x(0), x(1));
+    return share * (passed + back(x(0) - x(2), x(1) - x(3))) + (1.0 - share) * back(x(0), x(1));
   };
   const auto rate = [&](const Eigen::Vector4d& x, const PairedInput& u) {
     const double passed = u(1) - 2.0 * zeta * onset * x(3) - onset * onset * x(2);

@@ -9,8 +9,8 @@ class ReturnDesign final : public WashoutDesign {
  public:
   SharedKnobs shared;
   double onset = 1.0;        ///< high-pass of surge and sway, second order [rad/s]
-  double threshold = 0.17;   ///< a force below this brings the platform home [m/s^2]
-  double home = 2.0;         ///< how fast it comes home: critically damped [rad/s]
+  double threshold = 0.17;   ///< a force below this brings the platform back to neutral [m/s^2]
+  double home = 2.0;         ///< how fast it returns: critically damped [rad/s]
   double home_force = 0.15;  ///< greatest acceleration on the way back to neutral, below what is felt [m/s^2]
 
   [[nodiscard]] std::vector<Knob> knobs() override;
@@ -18,13 +18,13 @@ class ReturnDesign final : public WashoutDesign {
   [[nodiscard]] std::unique_ptr<WashoutDesign> clone() const override { return std::make_unique<ReturnDesign>(*this); }
 };
 
-/// Tilt coordination without a low-pass and a mode that brings the platform home, after You, Lee, Kang & Yoo 2005 (J
+/// Tilt coordination without a low-pass and a mode that brings the platform back, after You, Lee, Kang & Yoo 2005 (J
 /// Mech Sci Technol 19:272). The tilt stands for all of the force that the shift does not render at the moment, and
 /// goes there at once, no faster than tilt_rate:
 ///
 ///     onset mode   shift'' = high-pass(gain a); tilt -> asin((gain f - shift'') / g)
 ///     return mode  while |gain f| is below the threshold: shift'' = 2 w (v - shift') within home_force, tilt -> 0,
-///                  v the speed home that half of home_force can brake, -w/2 shift close to home
+///                  v the speed back that half of home_force can brake, -w/2 shift close to neutral
 ///
 /// A shift so fast that home_force would not end it within four fifths of the range is braked harder, and that is felt.
 ///

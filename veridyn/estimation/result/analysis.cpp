@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "veridyn/core/constants.hpp"
 
@@ -63,6 +64,25 @@ std::vector<Parameter> marked(std::vector<Parameter> parameters, std::span<const
 }
 
 const Parameter* MethodResult::find(std::string_view name) const { return find_parameter(parameters, name); }
+
+Estimate estimate_of(const ParameterGroup& group, Eigen::MatrixXd covariance,
+                     std::span<const PredictedQuantity> predictions) {
+  Estimate estimate;
+  estimate.subject = group.name;
+  estimate.method = group.method;
+  estimate.parameters = group.parameters;
+  estimate.covariance = std::move(covariance);
+  for (const MethodResult& other : group.methods) {
+    if (other.method == group.method || !other.usable) continue;
+    for (const Parameter& p : other.parameters) estimate.other_methods.push_back({other.method, p});
+  }
+  for (const PredictedQuantity& q : predictions)
+    estimate.validation[q.name] = {q.fit.mae, q.fit.rmse, q.fit.r2, q.fit.theil, q.unit};
+  estimate.verdict = group.reason;
+  estimate.judgement = group.judgement;
+  estimate.evidence = group.evidence;
+  return estimate;
+}
 
 double Analysis::true_value(std::string_view parameter) const {
   const auto found = truth.find(parameter);

@@ -77,6 +77,11 @@ struct PredictedQuantity {
   double long_run = kNaN;
 };
 
+/// The file form of a domain with one group: the group as it is, what the methods that were not chosen gave, and the
+/// predictions. Fit, warnings and structure are the domain's. @param covariance of the group's parameters
+[[nodiscard]] Estimate estimate_of(const ParameterGroup& group, Eigen::MatrixXd covariance,
+                                   std::span<const PredictedQuantity> predictions);
+
 /// What identification delivers, whatever the domain: read by estimate.json, tables, console and report. What only one
 /// domain has (its signals, its figures) stays in the domain's type, which holds one of these.
 struct Analysis {

@@ -41,7 +41,7 @@ WideCount count_wide(const ResultIndices& r, const std::vector<std::string>* inp
 
 const KeyTable<IndexOptions>& IndexOptions::keys() {
   using O = IndexOptions;
-  constexpr long long kMost = 10000000;
+  constexpr long long kMaxSamples = 10000000;
   const auto variance = [](auto member) {
     return [member](O & o) -> auto& { return o.variance.*member; };
   };
@@ -53,13 +53,13 @@ const KeyTable<IndexOptions>& IndexOptions::keys() {
               {{"variance", IndexMethod::kVariance}, {"morris", IndexMethod::kMorris}, {"none", IndexMethod::kNone}},
               "`variance`: first and total order with intervals; `morris`: elementary effects, a screening at a "
               "small share of the cost")
-          .count("index_samples", variance(&V::samples), 2, kMost,
+          .count("index_samples", variance(&V::samples), 2, kMaxSamples,
                  "N of the N (inputs + 2) points at which results are needed; a power of two is best")
-          .count("replicates", variance(&V::replicates), 2, kMost,
+          .count("replicates", variance(&V::replicates), 2, kMaxSamples,
                  "independent parts of these samples, whose spread makes the intervals")
           .number("level", variance(&V::level), "1", between(0.0, 1.0), "of these intervals")
-          .count("trajectories", &O::morris_trajectories, 1, kMost, "of Morris: trajectories (inputs + 1) points")
-          .count("levels", &O::morris_levels, 2, kMost, "of Morris' grid; even")
+          .count("trajectories", &O::morris_trajectories, 1, kMaxSamples, "of Morris: trajectories (inputs + 1) points")
+          .count("levels", &O::morris_levels, 2, kMaxSamples, "of Morris' grid; even")
           .check([](const StudyTable& t, O& o) {
             if (o.morris_levels % 2 != 0) t.fail("levels", fmt::format("= {} must be even", o.morris_levels));
           });

@@ -10,7 +10,7 @@
 namespace veridyn::io {
 namespace {
 
-/// Stamps in a row that follow each other and are believed, and at the end of a log.
+/// Stamps in a row that follow each other and are trusted, and at the end of a log.
 constexpr int kStampsAreSure = 32, kLastStampsAreSure = 8;
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace veridyn::io {
 ///
 /// - Packets with a wrong checksum are left out and counted. After damage the reader goes on at the next packet whose
 ///   checksum is right.
-/// - Systems are told apart: topics of the one that sent most of the motion have the message's name; those of others
+/// - Systems are distinguished: topics of the one that sent most of the motion have the message's name; those of others
 ///   are `system2.ATTITUDE`, those of its other components (a gimbal) `component154.ATTITUDE`. Sensors and ports that a
 ///   message numbers are instances.
 /// - Where messages hold their own time (since the sender started, or since 1970) that is taken: radio links deliver in

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -13,23 +12,59 @@
 
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/study_keys.hpp"
 #include "veridyn/core/units.hpp"
 
 namespace veridyn::io {
 namespace {
 
-constexpr std::size_t kLargestPacket = 65507;  // of UDP over IPv4 [bytes]
+constexpr long long kLargestPacket = 65507;  // of UDP over IPv4 [bytes]
 
-constexpr std::array<std::pair<std::string_view, GatherType>, 10> kPacketTypes = {{{"f32", GatherType::kFloat},
-                                                                                   {"f64", GatherType::kDouble},
-                                                                                   {"i8", GatherType::kInt8},
-                                                                                   {"u8", GatherType::kUint8},
-                                                                                   {"i16", GatherType::kInt16},
-                                                                                   {"u16", GatherType::kUint16},
-                                                                                   {"i32", GatherType::kInt32},
-                                                                                   {"u32", GatherType::kUint32},
-                                                                                   {"i64", GatherType::kInt64},
-                                                                                   {"u64", GatherType::kUint64}}};
+const KeyTable<PacketField>& field_keys() {
+  using F = PacketField;
+  using enum GatherType;
+  static const auto table =
+      KeyTable<F>("field", "A number of a packet.")
+          .text(
+              "name", &F::name,
+              "`time`, which is needed; in frame flu `accel_x`, `gyro_x`, `velocity_x`, ..., `speed`; in a world with "
+              "z "
+              "up `pos_x`, `world_velocity_x`, `world_accel_x`, ..., the body's axes `forward_x`, ..., `right_x`, ... "
+              "or `yaw`, `pitch`, `roll`; any other becomes a channel of that name")
+          .required()
+          .count("offset", &F::offset, 0, kLargestPacket, "where it begins [bytes]")
+          .required()
+          .choice("type", &F::type,
+                  {{"f32", kFloat},
+                   {"f64", kDouble},
+                   {"i8", kInt8},
+                   {"u8", kUint8},
+                   {"i16", kInt16},
+                   {"u16", kUint16},
+                   {"i32", kInt32},
+                   {"u32", kUint32},
+                   {"i64", kInt64},
+                   {"u64", kUint64}},
+                  "how it is written, little-endian")
+          .text("unit", &F::unit, "of the number in the packet")
+          .number("factor", &F::factor, "1", kAnyNumber, "a sign or a scale before the unit");
+  return table;
+}
+
+/// In SI.
+PacketField read_field(const StudyTable& table) {
+  PacketField field = field_keys().read(table);
+  Unit unit;
+  try {
+    unit = parse_unit(field.unit);
+  } catch (const InputError& error) {
+    table.fail("unit", error.what());
+  }
+  field.unit = unit.si_name();
+  field.factor *= unit.scale;
+  field.bias = unit.offset;
+  return field;
+}
 
 template <typename T>
 void write_as(double value, char* at) {
@@ -152,45 +187,30 @@ void encode(const PacketLayout& layout, std::span<const double> values, std::spa
   }
 }
 
+const KeyTable<PacketLayout>& packet_layout_keys() {
+  using L = PacketLayout;
+  static const auto table =
+      KeyTable<L>("packet", "Packets of a sender of one's own.")
+          .count("size", &L::size, 1, kLargestPacket, "of a whole packet, exactly [bytes]")
+          .required()
+          .text("begins_with", &L::begins_with, "the same bytes at the start of every packet")
+          .choice("gravity", &L::gravity_in, {{"in", true}, {"out", false}},
+                  "whether accelerations hold gravity, as an accelerometer's do")
+          .otherwise("not known; required of a live rig")
+          .tables("field", field_keys(), [](const StudyTable& t, L& layout) { layout.fields.push_back(read_field(t)); })
+          .check([](const StudyTable& t, L& layout) {
+            if (layout.fields.empty()) t.fail("field", "is missing: a packet has fields");
+            if (const LayoutFault fault = fault_of(layout); !fault.what.empty())
+              t.tables("field")[fault.field].fail("offset", fault.what);
+            if (!layout.has("time")) t.fail("field", "without 'time': packets in a file are ordered by it");
+          });
+  return table;
+}
+
 PacketLayout read_packet_layout(const StudyTable& table) {
-  PacketLayout layout;
+  PacketLayout layout = packet_layout_keys().read(table);
   layout.name = layout.sender = table.path();
-  const long long size = table.integer("size");
-  if (size < 1 || size > static_cast<long long>(kLargestPacket))
-    table.fail("size", fmt::format("is {}; a packet has 1 to {} bytes", size, kLargestPacket));
-  layout.size = static_cast<std::size_t>(size);
-  layout.begins_with = table.text_or("begins_with", "");
   layout.seen = true;  // by whoever wrote it
-  if (table.has("gravity")) {
-    const std::vector<std::string> choices = {"in", "out"};
-    layout.gravity_in = table.choice_or("gravity", choices, "in") == "in";
-  }
-  std::vector<std::string> types;
-  for (const auto& [name, type] : kPacketTypes) types.emplace_back(name);
-  const std::vector<StudyTable> fields = table.tables("field");
-  for (const StudyTable& f : fields) {
-    PacketField field;
-    field.name = f.text("name");
-    const long long offset = f.integer("offset");
-    if (offset < 0 || offset >= size) f.fail("offset", fmt::format("is {}; the packet has {} bytes", offset, size));
-    field.offset = static_cast<std::size_t>(offset);
-    const std::string type = f.choice_or("type", types, "f32");
-    field.type =
-        std::find_if(kPacketTypes.begin(), kPacketTypes.end(), [&](const auto& t) { return t.first == type; })->second;
-    Unit unit;
-    try {
-      unit = parse_unit(f.text_or("unit", "1"));
-    } catch (const InputError& error) {
-      f.fail("unit", error.what());
-    }
-    field.unit = unit.si_name();
-    field.factor = unit.scale * f.number_or("factor", "1", 1.0);
-    field.bias = unit.offset;
-    layout.fields.push_back(std::move(field));
-  }
-  if (fields.empty()) table.fail("field", "is missing: a packet has fields");
-  if (const LayoutFault fault = fault_of(layout); !fault.what.empty()) fields[fault.field].fail("offset", fault.what);
-  if (!layout.has("time")) table.fail("field", "without 'time': packets in a file are ordered by it");
   return layout;
 }
 

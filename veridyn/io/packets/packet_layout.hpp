@@ -53,18 +53,11 @@ struct PacketLayout {
 /// @throws InputError naming layout and fields
 void check(const PacketLayout& layout);
 
-/// A layout of one's own:
-///     [data.packet]
-///     size = 28                    # bytes
-///     begins_with = "RIG1"
-///     gravity = "in"               # or "out": whether accelerations hold gravity; may be left out of a file's packets
-///     [[data.packet.field]]
-///     name = "accel_x"             # as above
-///     offset = 4
-///     type = "f32"                 # i8 u8 i16 u16 i32 u32 i64 u64 f32 f64
-///     unit = "g"                   # of the number in the packet
-///     factor = -1                  # a sign or a scale before the unit
-/// @throws InputError with file, line and key: as `check`, unknown types and units
+/// The keys of a layout of one's own, `[data.packet]` with `[[data.packet.field]]`.
+[[nodiscard]] const KeyTable<PacketLayout>& packet_layout_keys();
+
+/// A layout by these keys, called by its table.
+/// @throws InputError with file, line and key: as `check`, unknown types and units, no `time`
 [[nodiscard]] PacketLayout read_packet_layout(const StudyTable& table);
 
 /// The packet that decodes to these values, rounded to what its numbers can hold; what is not a field is zero.

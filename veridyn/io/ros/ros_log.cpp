@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t kMostTopics = 4096, kMostTransforms = 1000, kListed = 8;
 /// Fewer messages on another clock than these are latched ones, from before the recording.
-constexpr std::size_t kFew = 10;
+constexpr std::size_t kMessagesToNote = 10;
 
 double seconds(Nanoseconds ns) { return 1e-9 * static_cast<double>(ns); }
 
@@ -228,7 +228,7 @@ LogTopic RosLog::made_topic(Entry& entry, Log& log) {
   MessageTimes moments = message_times(table.stamps(), table.logged());
   if (table.layout().has_stamp && moments.without_stamp > 0)
     without_stamp_.push_back(fmt::format("{} of {}", moments.without_stamp, entry.name));
-  if (moments.moved >= kFew)
+  if (moments.moved >= kMessagesToNote)
     moved_.push_back(fmt::format("{} ({:.6g} s away)", entry.name, std::abs(seconds(moments.moved_by))));
   std::vector<double> stamps;
   stamps.reserve(moments.times.size());

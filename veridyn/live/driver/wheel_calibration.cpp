@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "veridyn/core/constants.hpp"
+#include "veridyn/core/study_keys.hpp"
 
 namespace veridyn::live {
 namespace {
@@ -42,27 +42,75 @@ bool overlap(const PedalCalibration& a, const PedalCalibration& b) {
   return std::min(a_high, b_high) > std::max(a_low, b_low);
 }
 
-std::uint16_t read_axis(const StudyTable& table) {
-  const std::string name = table.text("axis");
-  const std::optional<std::uint16_t> code = axis_code(name);
-  if (!code)
-    table.fail("axis", fmt::format("'{}' is no axis; say ABS_X, ABS_WHEEL, ABS_GAS, ... or ABS_ and its number", name));
-  return *code;
+/// `axis`, by its name.
+template <typename Part>
+void add_axis(KeyTable<Part>& table) {
+  table
+      .other({"axis", "", "an axis", "", "`ABS_X`, `ABS_WHEEL`, `ABS_GAS`, ..., or `ABS_` and its number"},
+             [](const StudyTable& t, const std::string& key, Part& part) {
+               const std::string name = t.text(key);
+               const std::optional<std::uint16_t> code = axis_code(name);
+               if (!code)
+                 t.fail(key, fmt::format("'{}' is no axis; say ABS_X, ABS_WHEEL, ABS_GAS, ... or ABS_ and its number",
+                                         name));
+               part.axis = *code;
+             })
+      .required();
 }
 
-std::int32_t read_number(const StudyTable& table, std::string_view key) {
-  const long long value = table.integer(key);
-  if (value < INT32_MIN || value > INT32_MAX) table.fail(key, fmt::format("is {}, beyond what an axis can say", value));
-  return static_cast<std::int32_t>(value);
+/// A number that the axis says.
+template <typename Part>
+void add_reading(KeyTable<Part>& table, const char* name, std::int32_t Part::*member, const char* says) {
+  table
+      .other({name, "", "a whole number", "", says},
+             [member](const StudyTable& t, const std::string& key, Part& part) {
+               const long long value = t.integer(key);
+               if (value < INT32_MIN || value > INT32_MAX)
+                 t.fail(key, fmt::format("is {}, beyond what an axis can say", value));
+               part.*member = static_cast<std::int32_t>(value);
+             })
+      .required();
 }
 
-PedalCalibration read_pedal(const StudyTable& table) {
-  PedalCalibration result;
-  result.axis = read_axis(table);
-  result.released = read_number(table, "released");
-  result.pressed = read_number(table, "pressed");
-  result.deadband = table.number_or("deadband", "1", result.deadband);
-  return result;
+const KeyTable<SteeringCalibration>& steering_keys() {
+  using S = SteeringCalibration;
+  static const auto table = [] {
+    KeyTable<S> keys("steering", "The steering wheel.");
+    add_axis(keys);
+    add_reading(keys, "left", &S::left, "at the left lock; may be the largest");
+    add_reading(keys, "centre", &S::centre, "straight ahead");
+    add_reading(keys, "right", &S::right, "at the right lock");
+    keys.number("lock", &S::lock, "rad", share_up_to(100.0), "of the wheel, from the centre to either side")
+        .required()
+        .number("deadband", &S::deadband, "1", from_to(0.0, 0.5), "around the centre, share of the way to the lock");
+    return keys;
+  }();
+  return table;
+}
+
+const KeyTable<PedalCalibration>& pedal_keys() {
+  using P = PedalCalibration;
+  static const auto table = [] {
+    KeyTable<P> keys("pedal", "A pedal. Two may share an axis where one moves it up from the middle, the other down.");
+    add_axis(keys);
+    add_reading(keys, "released", &P::released, "at rest");
+    add_reading(keys, "pressed", &P::pressed, "down; may be the smaller");
+    keys.number("deadband", &P::deadband, "1", from_to(0.0, 0.4), "at each end, share of the way");
+    return keys;
+  }();
+  return table;
+}
+
+const KeyTable<GearCalibration>& gear_keys() {
+  using G = GearCalibration;
+  static const auto table = [] {
+    KeyTable<G> keys("gear", "A gear selector that is an axis: the nearer of two numbers. May be left out.");
+    add_axis(keys);
+    add_reading(keys, "forward", &G::forward, "in a forward gear");
+    add_reading(keys, "reverse", &G::reverse, "in reverse");
+    return keys;
+  }();
+  return table;
 }
 
 std::string pedal_to_toml(std::string_view name, const PedalCalibration& pedal) {
@@ -112,18 +160,12 @@ std::optional<WheelCalibration::Problem> WheelCalibration::problem() const {
   if (!(low < steering.centre && steering.centre < high))
     return Problem{"steering", "centre",
                    fmt::format("is {}; must lie between the locks {} and {}", steering.centre, low, high)};
-  if (!(steering.lock > 0.0 && steering.lock <= 100.0))
-    return Problem{"steering", "lock", fmt::format("is {} rad; must be > 0 and <= 100", steering.lock)};
-  if (!(steering.deadband >= 0.0 && steering.deadband <= 0.5))
-    return Problem{"steering", "deadband", fmt::format("is {}; must be from 0 to 0.5", steering.deadband)};
   const std::vector<NamedPedal> pedals = pedals_of(*this);
   for (std::size_t k = 0; k < pedals.size(); ++k) {
     const auto& [name, one] = pedals[k];
     if (one->released == one->pressed)
       return Problem{name, "pressed",
                      fmt::format("is {}, where the pedal is released: it does not move", one->pressed)};
-    if (!(one->deadband >= 0.0 && one->deadband <= 0.4))
-      return Problem{name, "deadband", fmt::format("is {}; must be from 0 to 0.4", one->deadband)};
     if (one->axis == steering.axis)
       return Problem{name, "axis", fmt::format("{} is that of the steering", axis_name(one->axis))};
     for (std::size_t other = 0; other < k; ++other) {
@@ -145,31 +187,28 @@ std::optional<WheelCalibration::Problem> WheelCalibration::problem() const {
   return std::nullopt;
 }
 
-WheelCalibration WheelCalibration::read(const StudyTable& table) {
-  WheelCalibration result;
-  const StudyTable wheel = table.table("steering");
-  result.steering.axis = read_axis(wheel);
-  result.steering.left = read_number(wheel, "left");
-  result.steering.centre = read_number(wheel, "centre");
-  result.steering.right = read_number(wheel, "right");
-  result.steering.lock = wheel.number("lock", "rad");
-  result.steering.deadband = wheel.number_or("deadband", "1", result.steering.deadband);
-  result.throttle = read_pedal(table.table("throttle"));
-  result.brake = read_pedal(table.table("brake"));
-  if (table.has("clutch")) result.clutch = read_pedal(table.table("clutch"));
-  if (table.has("gear")) {
-    const StudyTable gear = table.table("gear");
-    result.gear = GearCalibration{
-        .axis = read_axis(gear), .forward = read_number(gear, "forward"), .reverse = read_number(gear, "reverse")};
-  }
-  if (const std::optional<Problem> problem = result.problem())
-    table.table(problem->table).fail(problem->key, problem->text);
-  return result;
+const KeyTable<WheelCalibration>& WheelCalibration::keys() {
+  using W = WheelCalibration;
+  static const auto table =
+      KeyTable<W>("calibration")
+          .within("steering", steering_keys(),
+                  [](const StudyTable& t, W& w) { w.steering = steering_keys().read(t.table("steering")); })
+          .within("throttle", pedal_keys(),
+                  [](const StudyTable& t, W& w) { w.throttle = pedal_keys().read(t.table("throttle")); })
+          .within("brake", pedal_keys(),
+                  [](const StudyTable& t, W& w) { w.brake = pedal_keys().read(t.table("brake")); })
+          .whole_table("clutch", &W::clutch, pedal_keys())
+          .whole_table("gear", &W::gear, gear_keys())
+          .check([](const StudyTable& t, W& w) {
+            if (const std::optional<Problem> problem = w.problem())
+              t.table(problem->table).fail(problem->key, problem->text);
+          });
+  return table;
 }
 
 WheelCalibration WheelCalibration::load(const std::filesystem::path& file) {
   const Study study = Study::load(file);
-  WheelCalibration result = read(study.root());
+  WheelCalibration result = keys().read(study.root());
   study.root().finish();
   return result;
 }

@@ -43,26 +43,7 @@ struct GearCalibration {
   std::int32_t forward = 0, reverse = 128;
 };
 
-/// From the numbers of a wheel's axes to what the driver does. As a file:
-///
-///     [steering]
-///     axis = "ABS_X"
-///     left = 0
-///     centre = 32768
-///     right = 65535
-///     lock = "450 deg"          # of the wheel, from the centre to either side
-///     deadband = 0.005          # optional, like the next ones
-///     [throttle]                # and [brake], and [clutch] where there is one
-///     axis = "ABS_Z"
-///     released = 255
-///     pressed = 0
-///     deadband = 0.02
-///     [gear]                    # where it is an axis
-///     axis = "ABS_MISC"
-///     forward = 0
-///     reverse = 128
-///
-/// Two pedals may share an axis where one moves it up from the middle and the other one down.
+/// From the numbers of a wheel's axes to what the driver does: a file of `keys`, or `[live.driver.calibration]`.
 struct WheelCalibration {
   SteeringCalibration steering;
   PedalCalibration throttle, brake;
@@ -76,9 +57,10 @@ struct WheelCalibration {
   [[nodiscard]] std::vector<WheelAxis> at_rest() const;
 
   /// @throws InputError with file, line and key: an unknown axis, a centre that is not between the locks, a pedal that
-  /// does not move, pedals whose ranges overlap, a deadband that leaves nothing
+  /// does not move, pedals whose ranges overlap
   [[nodiscard]] static WheelCalibration load(const std::filesystem::path& file);
-  [[nodiscard]] static WheelCalibration read(const StudyTable& table);
+  /// Throws as `load` where it is read.
+  [[nodiscard]] static const KeyTable<WheelCalibration>& keys();
   [[nodiscard]] std::string to_toml() const;
 
   /// What cannot be, and at which key ("steering.centre").

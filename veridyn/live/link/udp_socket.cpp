@@ -87,7 +87,7 @@ std::optional<Datagram> UdpSocket::receive() {
   message.msg_iovlen = 1;
   message.msg_control = control.data();
   message.msg_controllen = control.size();
-  // A port that nobody listens to is told to the sender by an error of its next call: not of what is there to read.
+  // The sender learns of a port that nobody listens to by an error of its next call: not of what is there to read.
   ssize_t n = -1;
   const Nanoseconds looked = time_of(CLOCK_MONOTONIC);
   for (int k = 0; k < 4 && n < 0; ++k) {

@@ -62,18 +62,19 @@ std::string status_json(const RigStatus& status, const LiveStudy& study, const F
     const auto which = static_cast<cueing::PlatformAxis>(i);
     const cueing::AxisLimits& l = study.cueing.platform.limits.axes[i];
     if (!l.moves()) continue;
-    const cueing::AxisState told = axis(status.step.cueing.told, which);
-    j["axes"].push_back({{"name", std::string(name_of(which))},
-                         {"turns", turns(which)},
-                         {"lowest", l.lowest},
-                         {"highest", l.highest},
-                         {"told", told.position},
-                         {"to_limit", std::min(told.position - l.lowest, l.highest - told.position)},
-                         {"range_used", told.position < 0.0 ? told.position / l.lowest : told.position / l.highest},
-                         {"rate_used", std::abs(told.rate) / l.rate},
-                         {"reached", study.options.answers ? static_cast<double>(status.answers.reached[i])
-                                                           : axis(status.step.cueing.reached, which).position},
-                         {"limited", static_cast<bool>(status.step.cueing.limited[i])}});
+    const cueing::AxisState ordered = axis(status.step.cueing.ordered, which);
+    j["axes"].push_back(
+        {{"name", std::string(name_of(which))},
+         {"turns", turns(which)},
+         {"lowest", l.lowest},
+         {"highest", l.highest},
+         {"ordered", ordered.position},
+         {"to_limit", std::min(ordered.position - l.lowest, l.highest - ordered.position)},
+         {"range_used", ordered.position < 0.0 ? ordered.position / l.lowest : ordered.position / l.highest},
+         {"rate_used", std::abs(ordered.rate) / l.rate},
+         {"reached", study.options.answers ? static_cast<double>(status.answers.reached[i])
+                                           : axis(status.step.cueing.reached, which).position},
+         {"limited", static_cast<bool>(status.step.cueing.limited[i])}});
   }
   if (status.step.motion) {
     // In the vehicle, and on the platform: what the rider's accelerometer shows, forward, right, down.

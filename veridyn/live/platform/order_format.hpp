@@ -37,7 +37,7 @@ struct OrderFormatOptions {
 ///
 /// - motion_68: time, attitude and place are those of the platform: yaw, pitch and roll the commanded angles, place
 ///   its shift; everything else is zero. The packet was made for a vehicle's motion; that a platform's program takes
-///   it for positions is an assumption that was not tried on one.
+///   it for positions is an assumption that was not tested on one.
 /// - amc_aasd15a: ff ff, six u16 (high byte first; 0: the leg at its shortest, 65535: at its longest), four zeros,
 ///   0a 0d. Legs beyond those that the platform has stand in their middle. As programs that are public send it; it was
 ///   not seen on the hardware.

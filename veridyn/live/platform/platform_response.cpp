@@ -23,14 +23,14 @@ struct Unknowns {
 Eigen::VectorXd simulated(const ToldAndReached& m, const Unknowns& u) {
   const double omega = std::exp(u.log_omega), zeta = std::exp(u.log_zeta);
   numerics::CausalFilter filter(numerics::TransferFunction{{omega * omega}, {1.0, 2.0 * zeta * omega, omega * omega}});
-  filter.reset(m.told.front());
+  filter.reset(m.ordered.front());
   const double behind = std::max(u.delay, 0.0) / m.step;
   const auto whole = static_cast<std::ptrdiff_t>(behind);
   const double part = behind - static_cast<double>(whole);
-  const auto told = [&](std::ptrdiff_t k) { return m.told[std::max<std::ptrdiff_t>(k, 0)]; };
-  Eigen::VectorXd y(m.told.size());
+  const auto ordered = [&](std::ptrdiff_t k) { return m.ordered[std::max<std::ptrdiff_t>(k, 0)]; };
+  Eigen::VectorXd y(m.ordered.size());
   for (Eigen::Index k = 0; k < y.size(); ++k)
-    y(k) = u.gain * filter.step((1.0 - part) * told(k - whole) + part * told(k - whole - 1), m.step);
+    y(k) = u.gain * filter.step((1.0 - part) * ordered(k - whole) + part * ordered(k - whole - 1), m.step);
   return y;
 }
 
@@ -59,7 +59,7 @@ Unknowns best_start(const ToldAndReached& m, const Eigen::VectorXd& y) {
 
 /// Of the simulated motion by each unknown, by differences.
 Eigen::MatrixXd derivatives(const ToldAndReached& m, const Unknowns& u) {
-  Eigen::MatrixXd J(m.told.size(), 4);
+  Eigen::MatrixXd J(m.ordered.size(), 4);
   const Eigen::Vector4d steps(1e-4, 1e-4, 1e-4, 1e-2 * m.step);
   for (int i = 0; i < 4; ++i) {
     Eigen::Vector4d up = u.vector(), down = up;
@@ -108,19 +108,19 @@ Unknowns fitted(const ToldAndReached& m, const Eigen::VectorXd& y) {
 
 PlatformResponse fit_response(const ToldAndReached& m) {
   constexpr std::size_t kFewest = 200;
-  if (m.told.size() < kFewest || m.told.size() != m.reached.size())
+  if (m.ordered.size() < kFewest || m.ordered.size() != m.reached.size())
     throw InputError("platform response", fmt::format("{} answers; takes {} at least", m.reached.size(), kFewest));
   const Eigen::Map<const Eigen::VectorXd> reached(m.reached.data(), m.reached.size()),
-      told(m.told.data(), reached.size());
-  if (!reached.allFinite() || !told.allFinite()) throw InputError("platform response", "a position is not finite");
+      ordered(m.ordered.data(), reached.size());
+  if (!reached.allFinite() || !ordered.allFinite()) throw InputError("platform response", "a position is not finite");
   const Eigen::VectorXd y = reached.array() - reached.mean();
   ToldAndReached centred = m;
-  const double mean_told = told.mean();
-  for (double& v : centred.told) v -= mean_told;
+  const double mean_ordered = ordered.mean();
+  for (double& v : centred.ordered) v -= mean_ordered;
   const double moved = std::sqrt(y.squaredNorm() / static_cast<double>(y.size()));
-  const double asked = std::sqrt((told.array() - mean_told).square().mean());
+  const double asked = std::sqrt((ordered.array() - mean_ordered).square().mean());
   constexpr double kStands = 1e-6;
-  if (!(asked > kStands)) throw InputError("platform response", "the platform was told nothing");
+  if (!(asked > kStands)) throw InputError("platform response", "the platform had no order");
   if (!(moved > 0.01 * asked)) throw InputError("platform response", "the platform does not move");
 
   const Unknowns u = fitted(centred, y);

@@ -7,10 +7,10 @@
 
 namespace veridyn::live {
 
-/// What a platform was told and where it came to, at even times.
+/// What a platform was ordered and where it came to, at even times.
 struct ToldAndReached {
-  double step = 0.01;                 ///< [s]
-  std::vector<double> told, reached;  ///< [m or rad]
+  double step = 0.01;                    ///< [s]
+  std::vector<double> ordered, reached;  ///< [m or rad]
 };
 
 /// A number with its standard error.
@@ -18,7 +18,7 @@ struct WithError {
   double value = 0.0, sigma = 0.0;
 };
 
-/// How one axis of a platform follows: reached = gain told behind a delay and a second-order lag,
+/// How one axis of a platform follows: reached = gain ordered behind a delay and a second-order lag,
 /// gain exp(-s delay) omega^2 / (s^2 + 2 zeta omega s + omega^2).
 struct PlatformResponse {
   WithError gain, omega, zeta, delay;  ///< 1, rad/s, 1, s
@@ -30,7 +30,7 @@ struct PlatformResponse {
 };
 
 /// Fits the response to a motion that swept over frequencies (Gauss-Newton on the output error, derivatives by
-/// differences). @throws InputError for fewer than 200 samples, a platform that was told nothing, or did not move.
+/// differences). @throws InputError for fewer than 200 samples, a platform without an order, or did not move.
 [[nodiscard]] PlatformResponse fit_response(const ToldAndReached& motion);
 
 }  // namespace veridyn::live

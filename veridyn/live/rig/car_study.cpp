@@ -52,9 +52,8 @@ const KeyTable<DriverStudy>& DriverStudy::keys() {
           .other({"events", "", "a file", "", "recorded of such a device"}, driven_by(D::Kind::kEvents))
           .other({"table", "", "a file", "", "what a driver does over time"}, driven_by(D::Kind::kTable))
           .elsewhere({"calibration", "", "a file", "required with `wheel` and `events`",
-                      "that `veridyn rig wheel` writes for this wheel; or its tables, "
-                      "`[live.driver.calibration.steering]` ...",
-                      true})
+                      "that `veridyn rig wheel` writes for this wheel; or its tables, as below", true})
+          .within("calibration", WheelCalibration::keys(), [](const StudyTable&, D&) {})
           .number("ratio", ratio, "1", from_to(0.1, 100.0), "angle of the steering wheel over that of the road wheels")
           .number("reverse_share", reverse, "1", from_to(0.0, 1.0), "of the drive force, backward")
           .check([](const StudyTable& t, D&) {
@@ -72,7 +71,7 @@ DriverStudy read_driver(const StudyTable& live, const CommandRange& range) {
     d.calibration = table_calibration();
     if (table.has("calibration")) table.fail("calibration", "is for a wheel; a table says what its driver does");
   } else if (table.is_table("calibration")) {
-    d.calibration = WheelCalibration::read(table.table("calibration"));
+    d.calibration = WheelCalibration::keys().read(table.table("calibration"));
   } else {
     if (!table.has("calibration"))
       table.fail("calibration", "is missing: the file that `veridyn rig wheel` writes for this wheel");

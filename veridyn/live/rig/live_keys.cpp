@@ -1,6 +1,7 @@
 // The keys of `[live]` and the tables in it.
 #include <limits>
 
+#include "veridyn/io/packets/packet_layout.hpp"
 #include "veridyn/live/rig/live_study.hpp"
 
 namespace veridyn::live {
@@ -55,6 +56,7 @@ const KeyTable<LiveStudy>& LiveStudy::keys() {
           .required()
           .elsewhere({"packet", "", "", "`\"any\"`",
                       "which packets: recognised by content, a name of formats.md, or a table `[live.packet]`", true})
+          .within("packet", io::packet_layout_keys(), [](const StudyTable&, S&) {})
           .elsewhere({"stop", "", "an address", "none",
                       "with a car: where datagrams `VSTOP1`, emergency stops, are listened to", true})
           .elsewhere({"platform", "", "an address, a device", "",

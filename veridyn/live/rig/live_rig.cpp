@@ -234,7 +234,7 @@ bool LiveRig::at_rest_in_neutral() const {
   constexpr double kClose = 1e-3, kSlow = 1e-3;  // [m or rad], [m/s or rad/s]
   if (phase_ > 0.0) return false;
   for (std::size_t i = 0; i < kPlatformAxes; ++i) {
-    const AxisState a = axis(step_.cueing.told, static_cast<PlatformAxis>(i));
+    const AxisState a = axis(step_.cueing.ordered, static_cast<PlatformAxis>(i));
     if (!(std::abs(a.position) < kClose && std::abs(a.rate) < kSlow)) return false;
   }
   return true;
@@ -285,7 +285,7 @@ const RigStep& LiveRig::step(Nanoseconds time) {
   order.sequence = step_.sequence;
   order.time = time;
   order.state = step_.state;
-  order.motion = step_.cueing.told;
+  order.motion = step_.cueing.ordered;
   step_.to_platform = order;
   step_.order = encode(order);
   count_extrapolated();

@@ -33,13 +33,13 @@ void EvenMotion::add(const Telemetry& telemetry) {
 std::optional<EvenSample> EvenMotion::at(Nanoseconds now, const SenderClock& clock) const {
   if (count_ == 0) return std::nullopt;
   const Telemetry& last = newest(0);
-  const double theirs = clock.theirs(seconds(now)), wanted = theirs - options_.delay;
+  const double theirs = clock.theirs(seconds(now)), desired = theirs - options_.delay;
   EvenSample even{
       .sample = last.sample, .arrival = last.arrival, .extrapolated = 0.0, .age = theirs - last.sample.time};
   if (count_ == 1) return even;
-  if (wanted >= last.sample.time) {
+  if (desired >= last.sample.time) {
     const recording::MotionSample& before = newest(1).sample;
-    even.extrapolated = std::min(wanted - last.sample.time, options_.extrapolate);
+    even.extrapolated = std::min(desired - last.sample.time, options_.extrapolate);
     const double step = last.sample.time - before.time;
     // Two packets close together say nothing of where the motion leads.
     constexpr double kClose = 1e-3;
@@ -49,9 +49,9 @@ std::optional<EvenSample> EvenMotion::at(Nanoseconds now, const SenderClock& clo
   }
   for (std::size_t back = 1; back < count_; ++back) {
     const Telemetry& older = newest(back);
-    if (older.sample.time > wanted) continue;
+    if (older.sample.time > desired) continue;
     const Telemetry& newer = newest(back - 1);
-    const double part = (wanted - older.sample.time) / (newer.sample.time - older.sample.time);
+    const double part = (desired - older.sample.time) / (newer.sample.time - older.sample.time);
     even.sample = on_line(older.sample, newer.sample, part);
     even.arrival = newer.arrival;
     return even;

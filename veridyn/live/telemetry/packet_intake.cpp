@@ -107,7 +107,7 @@ PacketStatus PacketIntake::judge(const Datagram& packet, io::PacketMotion& motio
 }
 
 PacketStatus PacketIntake::recognise(const Datagram& packet) {
-  constexpr std::size_t kEnough = 10;
+  constexpr std::size_t kPacketsToDecide = 10;
   bool of_a_size = false;
   for (Candidate& c : candidates_) {
     if (!c.decoder.decode(packet.bytes, c.values)) continue;
@@ -127,7 +127,7 @@ PacketStatus PacketIntake::recognise(const Datagram& packet) {
   for (std::size_t i = 1; i < candidates_.size(); ++i) {
     if (candidates_[i].good > candidates_[best].good) best = i;
   }
-  if (candidates_[best].good >= kEnough) {
+  if (candidates_[best].good >= kPacketsToDecide) {
     bool alone = true;
     for (std::size_t i = 0; i < candidates_.size(); ++i)
       alone = alone && (i == best || 2 * candidates_[i].good < candidates_[best].good);

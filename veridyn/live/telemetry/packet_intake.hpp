@@ -47,9 +47,9 @@ struct Telemetry {
 };
 
 /// Takes packets in one by one, lets those through that a drive consists of, and counts the others by kind and sender.
-/// Which of several layouts they are is told by content, as sizes alone do not: ten packets that one layout can explain
-/// and no other. Packets without a time are stamped with their arrival. Accelerations and rates that they do not hold
-/// are derived from the last 60 ms and are half of that late.
+/// Which of several layouts they are follows from their content, as sizes alone do not: ten packets that one layout can
+/// explain and no other. Packets without a time are stamped with their arrival. Accelerations and rates that they do
+/// not hold are derived from the last 60 ms and are half of that late.
 ///
 /// Nothing is allocated or thrown after construction.
 class PacketIntake {

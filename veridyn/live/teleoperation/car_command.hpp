@@ -12,8 +12,8 @@ namespace veridyn::live {
 /// Kinds of frames between operator and car.
 inline constexpr std::uint8_t kCommandKind = 1, kReportKind = 2;
 
-/// What the car may be told. Both ends hold every command against it: the operator before it is sent, the car before
-/// it is executed.
+/// Limits of what the car may be ordered. Both ends hold every command against it: the operator before it is sent, the
+/// car before it is executed.
 struct CommandRange {
   double steering = 0.6;       ///< largest road-wheel angle to either side [rad]; at most 3.2
   double drive_force = 100.0;  ///< largest forward or backward [N]; at most 1600

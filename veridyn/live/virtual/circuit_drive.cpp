@@ -37,10 +37,11 @@ vehicle::Controls CircuitDriver::controls(const DriveState& state, double dt) {
   const Eigen::Vector2d to = circuit_->middle(circuit_->locate(place).distance + sense * ahead) - place;
   const double bearing = std::atan2(to.y(), to.x()) - state.vehicle(vehicle::kYaw);
   // A controller of speed with 2 rad/s, whose integral carries the car on a grade.
-  constexpr double kFollows = 4.0, kCarries = 4.0, kMost = 8.0;  // [1/s], [1/s^2], [m/s^2]
+  constexpr double kFollows = 4.0, kCarries = 4.0, kMaxAcceleration = 8.0;  // [1/s], [1/s^2], [m/s^2]
   const double missing = options_.speed - state.vehicle(vehicle::kU);
-  integral_ = std::clamp(integral_ + missing * dt, -kMost / kCarries, kMost / kCarries);
-  const double torque = mass_ * wheel_radius_ * std::clamp(kFollows * missing + kCarries * integral_, -kMost, kMost);
+  integral_ = std::clamp(integral_ + missing * dt, -kMaxAcceleration / kCarries, kMaxAcceleration / kCarries);
+  const double torque = mass_ * wheel_radius_ *
+                        std::clamp(kFollows * missing + kCarries * integral_, -kMaxAcceleration, kMaxAcceleration);
   return {.steer = std::clamp(std::atan(2.0 * wheelbase_ * std::sin(bearing) / to.norm()), -0.6, 0.6),
           .drive_torque = std::max(torque, 0.0),
           .brake_torque = std::max(-torque, 0.0)};

@@ -33,7 +33,7 @@ class FlippedBytes {
   std::size_t next_ = 0;
 };
 
-/// One direction of a serial line, on a time that it is told: ten bits a byte, one byte after the other, some flipped.
+/// One direction of a serial line, on a time that is given: ten bits a byte, one byte after the other, some flipped.
 class NoisyLine {
  public:
   /// @param flipped share of the bytes; 0: none @param baud [bit/s]

@@ -33,20 +33,20 @@ void VirtualPlatform::judge(const PlatformOrder& order) {
 void VirtualPlatform::follow(const PlatformOrder& order) {
   // Moved by the sender's time, which is even, not by that of arrival.
   const double dt = last_order_ && !silent_ ? std::clamp(seconds(order.time - last_order_->time), 0.0, kSilence) : 0.0;
-  cueing::PlatformState told = order.motion;
+  cueing::PlatformState ordered = order.motion;
   if (catches_up_) {
     // From where it went by itself it comes within its limits, and follows from there.
-    told = guard_.step(order.motion, dt);
+    ordered = guard_.step(order.motion, dt);
     bool there = dt > 0.0;
     for (std::size_t i = 0; i < kPlatformAxes; ++i) {
       const auto which = static_cast<PlatformAxis>(i);
       constexpr double kClose = 1e-3;  // [m or rad]
-      there = there && std::abs(axis(told, which).position - axis(order.motion, which).position) < kClose;
+      there = there && std::abs(axis(ordered, which).position - axis(order.motion, which).position) < kClose;
     }
     catches_up_ = !there;
   }
-  told_ = told;
-  reached_ = simulator_.step(told, dt);
+  ordered_ = ordered;
+  reached_ = simulator_.step(ordered, dt);
 }
 
 std::optional<PlatformAnswer> VirtualPlatform::take(const Datagram& datagram) {
@@ -96,17 +96,17 @@ void VirtualPlatform::step(Nanoseconds now) {
   if (!silent_ && now - last_arrival_ > nanoseconds(kSilence)) {
     silent_ = catches_up_ = true;
     ++counts_.silences;
-    guard_.reset(told_);
+    guard_.reset(ordered_);
     return;
   }
   if (!silent_ || !session_) return;
   // Gently to neutral, by itself.
-  cueing::PlatformCommand wanted;
+  cueing::PlatformCommand desired;
   const double left = std::exp(-dt);
-  wanted.shift = left * told_.shift;
-  wanted.angle = left * told_.angle;
-  told_ = guard_.step(wanted, dt);
-  reached_ = simulator_.step(told_, dt);
+  desired.shift = left * ordered_.shift;
+  desired.angle = left * ordered_.angle;
+  ordered_ = guard_.step(desired, dt);
+  reached_ = simulator_.step(ordered_, dt);
 }
 
 }  // namespace veridyn::live

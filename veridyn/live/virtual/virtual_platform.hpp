@@ -23,7 +23,7 @@ class VirtualPlatform {
   /// Where orders do not come, it moves by itself; to be called often.
   void step(Nanoseconds now);
 
-  /// What it was told and what it did, since the beginning.
+  /// Its orders and what it did, since the beginning.
   struct Counts {
     std::uint64_t followed = 0;
     std::uint64_t outside = 0;   ///< beyond position or rate; not followed
@@ -51,7 +51,7 @@ class VirtualPlatform {
   cueing::Platform platform_;
   cueing::PlatformGuard guard_;
   cueing::PlatformSimulator simulator_;
-  cueing::PlatformState told_, reached_;
+  cueing::PlatformState ordered_, reached_;
   std::optional<std::uint32_t> session_;
   Sender commander_, refused_;
   std::optional<PlatformOrder> last_order_;

@@ -120,9 +120,7 @@ EmgDrivenModel::EmgDrivenModel(const MusculoskeletalSystem& system, std::vector<
   parameters_ = model_parameters(unknowns_);
   double early = 0.0, late = 0.0;
   for (const MuscleUnknown& u : unknowns_) {
-    const bool delay = std::ranges::any_of(
-        u.parameters, [](const MuscleParameterName& name) { return name.field == MuscleParameterName::kDelay; });
-    if (!delay) continue;
+    if (!u.is_delay()) continue;
     early = std::min(early, u.fixed ? u.start : u.low);
     late = std::max(late, u.fixed ? u.start : u.high);
   }

@@ -52,8 +52,7 @@ double distance(const Extent& extent, double start) {
 }
 
 void set_bounds(MuscleUnknown& unknown, const MuscleUnknownSpec& spec, std::string_view place) {
-  const bool delay = !unknown.factor && unknown.parameters.front().field == MuscleParameterName::kDelay;
-  const double reach = delay ? 0.1 : 0.5 * std::abs(unknown.start);
+  const double reach = unknown.is_delay() ? 0.1 : 0.5 * std::abs(unknown.start);
   // Percent are counted from the start; units are values.
   const auto bound = [&](const std::optional<Extent>& extent, double otherwise) {
     if (!extent) return otherwise;
@@ -69,7 +68,7 @@ void set_bounds(MuscleUnknown& unknown, const MuscleUnknownSpec& spec, std::stri
     throw InputError(place, fmt::format("bounds of '{}', {:.6g} to {:.6g}, leave out its start, {:.6g} {}",
                                         unknown.name, unknown.low, unknown.high, unknown.start, unknown.unit));
   }
-  if (!delay && !(unknown.low > 0.0)) {
+  if (!unknown.is_delay() && !(unknown.low > 0.0)) {
     const bool angle = std::string_view(unknown.unit) == "rad" && unknown.low == 0.0;
     if (!angle)
       throw InputError(place, fmt::format("the lower bound of '{}' is {:.6g}; must be > 0", unknown.name, unknown.low));

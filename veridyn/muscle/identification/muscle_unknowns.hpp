@@ -56,6 +56,9 @@ struct MuscleUnknown {
   double start = 0.0, low = 0.0, high = 0.0;
   double prior_sigma = 0.0;  ///< infinite: none
   bool fixed = false;
+
+  /// Of excitations; all parameters of an unknown are then delays.
+  [[nodiscard]] bool is_delay() const { return parameters.front().field == MuscleParameterName::kDelay; }
 };
 
 /// The unknown that `spec` describes. @throws InputError at `place`, in one line, naming the nearest muscle or field;

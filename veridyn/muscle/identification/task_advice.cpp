@@ -22,9 +22,9 @@ using estimation::OutputErrorOptions;
 using estimation::RowMatrix;
 
 /// View of an estimate whose intervals are predicted.
-class Foretelling {
+class Forecast {
  public:
-  Foretelling(const MuscleParametricModel& model, const TaskEstimate& estimate, bool free_starts)
+  Forecast(const MuscleParametricModel& model, const TaskEstimate& estimate, bool free_starts)
       : model_(model), estimate_(estimate) {
     for (Eigen::Index i = 0; i < signed_index(model.parameters().size()); ++i)
       if (!model.parameters()[i].fixed) free_.push_back(i);
@@ -150,8 +150,8 @@ TaskAdvice advise_task(const MusculoskeletalSystem& subject, const MuscleParamet
                        const MuscleModelOptions& options, const TaskEstimate& estimate,
                        std::span<const PreparedTask> candidates, Progress& progress) {
   TaskAdvice advice;
-  const Foretelling foretelling(model, estimate, options.estimate_start);
-  if (!foretelling.possible()) {
+  const Forecast forecast(model, estimate, options.estimate_start);
+  if (!forecast.possible()) {
     advice.withheld = "the estimate has parameters without an interval";
     return advice;
   }
@@ -165,28 +165,27 @@ TaskAdvice advise_task(const MusculoskeletalSystem& subject, const MuscleParamet
       const std::vector<std::string> warnings = task_warnings(alone, theta);
       if (!warnings.empty()) why[c] = warnings.front();
     }
-    if (why[c].empty()) then[c] = foretelling.after(alone);
+    if (why[c].empty()) then[c] = forecast.after(alone);
     if (why[c].empty() && !then[c]) why[c] = fmt::format("{}: the simulation cannot finish", candidates[c].task.name);
   };
   const auto proceed = [&](std::size_t done) {
     return progress.update(static_cast<double>(done) / static_cast<double>(candidates.size()));
   };
   if (!numerics::parallel_for(candidates.size(), progress.threads(), one, proceed)) return {};
-  std::vector<bool> counts = foretelling.identified(foretelling.now());
+  std::vector<bool> counts = forecast.identified(forecast.now());
   for (const auto& variance : then) {
     if (!variance) continue;
-    const std::vector<bool> with_it = foretelling.identified(*variance);
+    const std::vector<bool> with_it = forecast.identified(*variance);
     std::transform(counts.begin(), counts.end(), with_it.begin(), counts.begin(), std::logical_or<>());
   }
   for (std::size_t k = 0; k < counts.size(); ++k)
-    if (!counts[k]) advice.left_to_prior.push_back(foretelling.name(k));
+    if (!counts[k]) advice.left_to_prior.push_back(forecast.name(k));
   advice.of_prior = advice.left_to_prior.size() == counts.size();
   if (advice.of_prior) counts.assign(counts.size(), true);
-  advice.now = foretelling.widest(foretelling.now(), counts);
+  advice.now = forecast.widest(forecast.now(), counts);
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     if (then[c])
-      advice.tasks.push_back(
-          {candidates[c].task.number, candidates[c].task.name, foretelling.widest(*then[c], counts)});
+      advice.tasks.push_back({candidates[c].task.number, candidates[c].task.name, forecast.widest(*then[c], counts)});
     else
       advice.left_out.push_back(why[c]);
   }

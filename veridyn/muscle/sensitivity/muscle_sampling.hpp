@@ -12,7 +12,7 @@ namespace veridyn::muscle {
 
 /// How the parameters of a muscle are varied.
 struct MuscleSamplingOptions {
-  std::size_t samples = 512;  ///< of each muscle; published: 500
+  std::size_t samples = 512;  ///< of each muscle
   double range = 0.05;        ///< share by which F0, L0 and LS go up and down
   bool scrambled = true;      ///< random digital shift of the Sobol sequence; published: none
   double accuracy = 1e-5;     ///< of the simulations

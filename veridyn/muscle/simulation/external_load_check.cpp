@@ -115,10 +115,10 @@ std::vector<std::string> external_load_warnings(const MusculoskeletalSystem& sys
                       fit.with, share, name, fit.factor, explanation(fit.factor)));
     }
   }
-  constexpr double kFar = 1.0;
+  constexpr double kFarFromBody_m = 1.0;
   for (const ExternalLoad& load : loads.loads) {
     const double distance = distance_from_body(system, load, analysis);
-    if (distance > kFar)
+    if (distance > kFarFromBody_m)
       warnings.push_back(fmt::format(
           "external load '{}' acts {:.3g} m from body '{}' (median): is its point in millimetres, or in another frame?",
           load.name, distance, system.model().bodies[load.body].name));

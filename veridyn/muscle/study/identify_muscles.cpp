@@ -132,24 +132,6 @@ estimation::ParameterGroup judged_group(const std::string& title, std::vector<es
   return group;
 }
 
-/// The estimate that all domains share, of a group that is complete.
-estimation::Estimate estimate_of(const estimation::ParameterGroup& group, Eigen::MatrixXd covariance,
-                                 const std::vector<TaskOutcome>& tasks,
-                                 const std::vector<estimation::PredictedQuantity>& predictions) {
-  estimation::Estimate estimate;
-  estimate.subject = group.name;
-  estimate.method = group.method;
-  estimate.verdict = group.reason;
-  estimate.parameters = group.parameters;
-  estimate.covariance = std::move(covariance);
-  estimate.evidence = group.evidence;
-  estimate.judgement = group.judgement;
-  for (const estimation::PredictedQuantity& q : predictions)
-    estimate.validation[q.name] = {q.fit.mae, q.fit.rmse, q.fit.r2, q.fit.theil, q.unit};
-  for (const auto& [name, value] : fit_of(tasks)) estimate.fit[name] = value;
-  return estimate;
-}
-
 std::string method_of(const TaskStudy& study) {
   if (study.published) return "particle swarm, then pattern search over all tasks";
   return study.emg ? "generalised least squares along the recorded angles of all tasks" : "output error over all tasks";
@@ -399,7 +381,8 @@ MuscleAnalysis identify(const TaskStudy& study, Progress& progress, numerics::Va
   group.reason = reason_of(group, a.tasks);
   group.methods.push_back({group.method, true, a.result.best.message, group.parameters});
   a.predictions = predictions_of(a.tasks, a.outputs);
-  a.estimate = estimate_of(group, widening_of(a.result) * a.result.best.covariance, a.tasks, a.predictions);
+  a.estimate = estimation::estimate_of(group, widening_of(a.result) * a.result.best.covariance, a.predictions);
+  a.estimate.fit = fit_of(a.tasks);
   a.estimate.next_measurements = next_measurements(a.advice);
   for (const std::span<const std::string> more :
        {std::span<const std::string>(found.warnings), std::span<const std::string>(wraps),
@@ -445,7 +428,8 @@ MuscleAnalysis validate(const TaskStudy& study, const estimation::Estimate& esti
   group.reason = fmt::format("{}: {}", holds ? "holds" : "does not hold", estimation::says(group.evidence.front()));
   group.method = estimate.method;
   group.parameters = estimate.parameters;
-  a.estimate = estimate_of(group, estimate.covariance, a.tasks, a.predictions);
+  a.estimate = estimation::estimate_of(group, estimate.covariance, a.predictions);
+  a.estimate.fit = fit_of(a.tasks);
   a.identified = with_values(study, estimate.parameters);
   a.groups.push_back(std::move(group));
   return a;

@@ -12,20 +12,20 @@
 namespace veridyn::muscle {
 
 const KeyTable<SensitivityStudyOptions>& sensitivity_keys() {
-  constexpr long long kMost = 10000000;
+  constexpr long long kMaxSamples = 10000000;
   using Sampling = MuscleSamplingOptions;
   using Cover = CoverOptions;
   static const auto sampling =
       KeyTable<Sampling>("sensitivity")
-          .count("samples", &Sampling::samples, 1, kMost,
-                 "points of the Sobol sequence for each muscle, a power of two uses it best; published: 500")
+          .count("samples", &Sampling::samples, 1, kMaxSamples,
+                 "points of the Sobol sequence for each muscle, a power of two uses it best")
           .number("range", &Sampling::range, "1", share_up_to(0.49), "share by which F0, L0 and LS go up and down")
           .flag("scrambled", &Sampling::scrambled,
                 "random digital shift of the sequence, from `seed`; `false`: as it is, as published")
           .number("accuracy", &Sampling::accuracy, "1", internal::kAccuracies, "of the simulations");
   static const auto cover =
       KeyTable<Cover>("sensitivity")
-          .count("choose", &Cover::tasks, 0, kMost, "tasks; 0: as few as excite every muscle")
+          .count("choose", &Cover::tasks, 0, kMaxSamples, "tasks; 0: as few as excite every muscle")
           .number("cover_share", &Cover::share, "1", share_up_to(1.0),
                   "a task excites a muscle with this share of the greatest NRMSE that any task has of it")
           .number("least_nrmse", &Cover::least_nrmse, "1", share_up_to(1.0),

@@ -113,9 +113,8 @@ Eigen::VectorXd hidden_values(const TaskStudy& study) {
     numerics::RandomStream random(study.seed, "hidden " + u.name);
     const double spread = random.uniform(-1.0, 1.0);
     // A share of a delay, which may be zero, is none.
-    const bool delay = !u.factor && u.parameters.front().field == MuscleParameterName::kDelay;
-    const double drawn = delay ? u.start + 0.5 * spread * (spread < 0.0 ? u.start - u.low : u.high - u.start)
-                               : u.start * (1.0 + study.person->spread * spread);
+    const double drawn = u.is_delay() ? u.start + 0.5 * spread * (spread < 0.0 ? u.start - u.low : u.high - u.start)
+                                      : u.start * (1.0 + study.person->spread * spread);
     if (u.fixed) continue;
     const auto set = study.person->values.find(u.name);
     theta(i) = set != study.person->values.end() ? set->second : std::clamp(drawn, u.low, u.high);

@@ -64,11 +64,6 @@ MuscleUnknown emg_delay(const Model& model, const EmgSettings& emg) {
   return make_unknown(model, spec, model.name);
 }
 
-bool is_delay(const MuscleUnknown& unknown) {
-  return std::ranges::all_of(unknown.parameters,
-                             [](const MuscleParameterName& name) { return name.field == MuscleParameterName::kDelay; });
-}
-
 /// `[[parameter]]`, or the default ones within `identify.bounds`; with EMG a delay in any case.
 std::vector<MuscleUnknown> unknowns_of(const StudyTable& root, double bounds, const Model& model,
                                        const std::optional<EmgSettings>& emg) {
@@ -77,7 +72,7 @@ std::vector<MuscleUnknown> unknowns_of(const StudyTable& root, double bounds, co
   if (emg && identify.has("bounds")) identify.fail("bounds", "is not for [emg]: write [[parameter]] with bounds");
   const bool chosen = !unknowns.empty();
   if (!chosen) unknowns = default_unknowns(model, emg, 100.0 * bounds);
-  if (emg && std::ranges::none_of(unknowns, is_delay)) unknowns.push_back(emg_delay(model, *emg));
+  if (emg && std::ranges::none_of(unknowns, &MuscleUnknown::is_delay)) unknowns.push_back(emg_delay(model, *emg));
   if (!chosen) return unknowns;
   if (identify.has("bounds")) identify.fail("bounds", "is for studies without [[parameter]], where each has its own");
   return unknowns;

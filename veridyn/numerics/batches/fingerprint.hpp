@@ -6,7 +6,8 @@
 
 namespace veridyn::numerics {
 
-/// Hash of what results follow from (FNV-1a, 64 bits): tells batches apart and finds damage; no protection from malice.
+/// Hash of what results follow from (FNV-1a, 64 bits): distinguishes batches and finds damage; no protection from
+/// malice.
 class Fingerprint {
  public:
   /// A text with its length, so that two texts are not one.

@@ -208,18 +208,11 @@ std::vector<estimation::StructureTrial> structure_trials(const VehicleIdentifica
 }  // namespace
 
 estimation::Estimate make_vehicle_estimate(const VehicleIdentification& identification, const std::string& subject) {
-  estimation::Estimate out;
-  out.subject = subject;
+  const VehicleEstimate* best = identification.best();
+  estimation::Estimate out = estimation::estimate_of(parameter_group(identification, subject),
+                                                     best != nullptr ? best->covariance : Eigen::MatrixXd(),
+                                                     identification.validation.quantities);
   out.interrupted = identification.interrupted;
-  if (const VehicleEstimate* best = identification.best()) {
-    out.method = to_string(best->method);
-    out.parameters = best->parameters;
-    out.covariance = best->covariance;
-  }
-  for (const VehicleEstimate& e : identification.estimates) {
-    if (e.method == identification.chosen || !e.usable) continue;
-    for (const Parameter& p : e.parameters) out.other_methods.push_back({std::string(to_string(e.method)), p});
-  }
   if (identification.output_error && identification.chosen == VehicleMethod::kOutputError) {
     for (const Parameter& p : out.parameters) {
       const auto unknown = std::ranges::find(kDriveUnknownNames, p.name);
@@ -246,16 +239,11 @@ estimation::Estimate make_vehicle_estimate(const VehicleIdentification& identifi
       if (std::isfinite(q.long_run)) out.fit[q.name + ".long_run"] = q.long_run;
     }
   }
-  for (const estimation::PredictedQuantity& q : identification.validation.quantities)
-    out.validation[q.name] = {q.fit.mae, q.fit.rmse, q.fit.r2, q.fit.theil, q.unit};
   if (!identification.tried_structures.empty()) {
     out.structure = name_of(identification.structure, identification.effects);
     out.structure_reason = identification.structure_reason;
     out.tried_structures = structure_trials(identification);
   }
-  out.verdict = identification.reason;
-  out.judgement = identification.judgement;
-  out.evidence = identification.checks;
   out.warnings = identification.warnings;
   return out;
 }

@@ -7,7 +7,7 @@
 namespace veridyn::vehicle {
 
 /// How an axle guides its wheels, and its spring where that is a table. By default the body rolls about the ground and
-/// wheels steer only as they are told. Equations: docs/vehicle.md, "Suspension geometry".
+/// wheels steer only as ordered. Equations: docs/vehicle.md, "Suspension geometry".
 struct AxleSuspension {
   /// h, height of the roll centre above the road at rest [m]: the links carry the axle's lateral force to the body
   /// there, so that h F_Y is transferred between the tyres without rolling the body.

@@ -238,6 +238,25 @@ VehicleTrajectory scaled(const VehicleTrajectory& trajectory, const ScaleFactors
   return out;
 }
 
+namespace {
+
+const KeyTable<SimilarityParameter>& similarity_parameter_keys() {
+  using P = SimilarityParameter;
+  static const auto table =
+      KeyTable<P>("parameter", "A further quantity, which gets its group like any other.")
+          .text("name", &P::name, "a new one")
+          .required()
+          .text("symbol", &P::symbol, "as in formulas")
+          .otherwise("the name")
+          .text("affects", &P::affects, "which part of the behaviour, in words")
+          .elsewhere({"value", "", "", "", "a number with `unit`, or a text with one, `\"3 N\"`"})
+          .required()
+          .elsewhere({"unit", "", "", "that of `value`", "of `value`, where it is a number", true});
+  return table;
+}
+
+}  // namespace
+
 const KeyTable<ScaleRequest>& ScaleRequest::keys() {
   using R = ScaleRequest;
   static const auto table =
@@ -250,17 +269,16 @@ const KeyTable<ScaleRequest>& ScaleRequest::keys() {
           .otherwise("by `length_ratio` cubed: the same density")
           .number("speed", &R::speed, "m/s", kPositive, "of the model")
           .otherwise("by `length_ratio`: the same time axis")
-          .flag("froude", &R::froude, "speed by the square root of the length ratio, so that gravity scales too");
+          .flag("froude", &R::froude, "speed by the square root of the length ratio, so that gravity scales too")
+          .tables("parameter", similarity_parameter_keys(), [](const StudyTable&, R&) {});
   return table;
 }
 
 std::vector<SimilarityParameter> read_similarity_parameters(const StudyTable& table) {
   std::vector<SimilarityParameter> list;
   for (const StudyTable& one : table.tables("parameter")) {
-    SimilarityParameter parameter;
-    parameter.name = one.text("name");
-    parameter.symbol = one.text_or("symbol", parameter.name);
-    parameter.affects = one.text_or("affects", "");
+    SimilarityParameter parameter = similarity_parameter_keys().read(one);
+    if (parameter.symbol.empty()) parameter.symbol = parameter.name;
     try {
       if (one.is_text("value") && !one.has("unit")) {
         const std::string text = one.text("value");

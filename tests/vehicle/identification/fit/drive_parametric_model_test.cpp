@@ -113,16 +113,16 @@ TEST(DriveParametricModel, KnowsWhatNoiseOfTheSteeringDoesToItsOutputs) {
     const DriveParametricModel model(signals, spans, family_car(), {});
     const Eigen::MatrixXd all = output_of(model, theta_of(model));
     output = all.bottomRows(all.rows() - 200);  // without the transient of where it begins
-    return model.steering_noise_effect(theta_of(model));
+    return model.steering_noise(theta_of(model));
   };
   Eigen::MatrixXd without, with;
-  EXPECT_EQ(outputs(exact, 1, without).sigma.norm(), 0.0);
+  EXPECT_EQ(outputs(exact, 1, without).variance.norm(), 0.0);
   // The band that the steering is low-passed to is another one of each drive.
   Eigen::VectorXd variance = Eigen::VectorXd::Zero(2), later = variance, known_variance = variance, known_later = later;
   constexpr int kDrives = 10;
   for (int i = 0; i < kDrives; ++i) {
-    const DriveParametricModel::SteeringEffect known = outputs(sensors, static_cast<std::uint64_t>(i), with);
-    known_variance += known.sigma.cwiseAbs2() / kDrives;
+    const estimation::InputNoise known = outputs(sensors, static_cast<std::uint64_t>(i), with);
+    known_variance += known.variance / kDrives;
     known_later += known.autocovariance / kDrives;
     EXPECT_GT(known.memory.minCoeff(), 5.0);
     const Eigen::MatrixXd moved = with - without;
@@ -144,7 +144,7 @@ TEST(DriveParametricModel, HasNoNoiseOfTheSteeringWhereItIsExactOrSmoothed) {
   const std::vector<TimeSpan> spans{{4.0, 8.0}};
   const auto effect = [&](const DriveSignals& signals, const DriveModelOptions& options) {
     const DriveParametricModel model(signals, spans, family_car(), options);
-    return model.steering_noise_effect(theta_of(model)).sigma.maxCoeff();
+    return model.steering_noise(theta_of(model)).variance.maxCoeff();
   };
   const DriveSignals noisy = rolling_signals(reference_drive_sensors());
   EXPECT_GT(effect(noisy, {}), 0.0);

@@ -17,6 +17,7 @@ estimation::PredictedQuantity yaw_rate(double r2, double rmse, double lag1 = 0.0
   estimation::PredictedQuantity q{.name = "yaw_rate", .unit = "rad/s", .fit = {}, .lag1 = lag1};
   q.fit.r2 = r2;
   q.fit.rmse = rmse;
+  q.fit.count = 1000;
   return q;
 }
 
@@ -185,6 +186,7 @@ TEST(VehicleJudgement, FindsAModelThatIsSystematicallyOffOnTheHoldOut) {
   EXPECT_EQ(outcome(0.02, 0.1, 0.1), Outcome::kPassed) << "larger, but white";
   EXPECT_EQ(outcome(0.02, 0.5, 0.5), Outcome::kCare);
   EXPECT_EQ(outcome(0.011, 0.5, 0.1), Outcome::kCare);
+  EXPECT_EQ(outcome(0.01, 0.31, 0.28), Outcome::kPassed) << "no other than where it was identified";
   const VehicleJudgement found = with(0.02, 0.5, 0.5);
   EXPECT_EQ(found.judgement.prediction.grade, estimation::Grade::kWithCare);
   EXPECT_EQ(found.judgement.parameters.grade, estimation::Grade::kYes);

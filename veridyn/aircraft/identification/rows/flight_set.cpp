@@ -62,7 +62,12 @@ std::vector<estimation::RecordingUse> recording_uses(std::span<const PreparedFli
 }
 
 std::vector<PreparedFlight> side_by_side(std::vector<PreparedFlight> flights) {
+  const auto excited = [](const PreparedFlight& flight) {
+    return flight.usable() &&
+           !(flight.segments.longitudinal.excited.empty() && flight.segments.lateral.excited.empty());
+  };
   const bool any_usable = std::ranges::any_of(flights, &PreparedFlight::usable);
+  const bool any_excited = std::ranges::any_of(flights, excited);
   double end = flights.front().aligned.recording.span().begin;
   for (PreparedFlight& flight : flights) {
     const TimeSpan span = flight.aligned.recording.span();
@@ -70,10 +75,11 @@ std::vector<PreparedFlight> side_by_side(std::vector<PreparedFlight> flights) {
     end += span.duration() + kBetweenFlights_s;
     for (Evidence& row : flight.recording_evidence)
       row.about = row.about.empty() ? flight.name : of_flight(flight.name, row.about);
-    if (!flight.usable() && any_usable)
-      flight.recording_evidence = {left_out(flight)};
-    else if (flight.usable() && flight.segments.longitudinal.excited.empty() && flight.segments.lateral.excited.empty())
-      flight.recording_evidence.push_back(nothing_excited(flight));
+    if (!flight.usable() && any_usable) flight.recording_evidence = {left_out(flight)};
+    if (!flight.usable() || excited(flight)) continue;
+    // What gives no estimate a row spoils none.
+    if (any_excited) flight.recording_evidence.clear();
+    flight.recording_evidence.push_back(nothing_excited(flight));
   }
   return flights;
 }

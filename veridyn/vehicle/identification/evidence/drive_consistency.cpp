@@ -105,6 +105,8 @@ Evidence fault_row(const ChannelFault& fault, Outcome outcome, const DriveConsis
       .with("taken", fault.taken)
       .with("gradient", gradient)
       .with("lean", gradient * gravity)
+      .with("least", fault.least)
+      .with("most", fault.most)
       .with("from", joined(fault.from, drive.names));
 }
 

@@ -397,17 +397,18 @@ LinearDrive DriveParametricModel::linearized(double u, const Eigen::VectorXd& th
   });
 }
 
-DriveParametricModel::SteeringEffect DriveParametricModel::steering_noise_effect(const Eigen::VectorXd& theta) const {
+estimation::InputNoise DriveParametricModel::steering_noise(const Eigen::VectorXd& theta) const {
   const auto outputs = signed_index(compared_.size());
-  SteeringEffect out{Eigen::VectorXd::Zero(outputs), Eigen::VectorXd::Ones(outputs), Eigen::VectorXd::Zero(outputs)};
+  estimation::InputNoise out{.variance = Eigen::VectorXd::Zero(outputs),
+                             .autocovariance = Eigen::VectorXd::Zero(outputs),
+                             .memory = Eigen::VectorXd::Ones(outputs)};
   if (!(steer_sigma_ > 0.0) || !(steer_error_share_ > 0.0) || segments_.empty()) return out;
   const SpeedRange range = speeds();
   const DriveNoise noise = drive_noise(linearized(0.5 * (range.slowest + range.fastest), theta),
                                        {.sigma = steer_sigma_, .band_share = steer_error_share_, .step = grid_.step});
   if (!(numerics::general_eigenvalues(noise.F).cwiseAbs().maxCoeff() < 1.0)) return out;
   const Eigen::MatrixXd P = numerics::discrete_lyapunov(noise.F, noise.G * noise.G.transpose()).X;
-  const Eigen::VectorXd variance = (noise.C * P * noise.C.transpose()).diagonal().cwiseMax(0.0);
-  out.sigma = variance.cwiseSqrt();
+  out.variance = (noise.C * P * noise.C.transpose()).diagonal().cwiseMax(0.0);
   // C F^k P C' is the autocovariance at k samples; all of them together are 2 C (1 - F)^-1 P C' less that at 0.
   const Eigen::MatrixXd rest = Eigen::MatrixXd::Identity(noise.F.rows(), noise.F.cols()) - noise.F;
   const Eigen::VectorXd sum =
@@ -419,7 +420,7 @@ DriveParametricModel::SteeringEffect DriveParametricModel::steering_noise_effect
         (noise.C * later * noise.C.transpose()).diagonal() / static_cast<double>(estimation::kColourLags);
   }
   for (Eigen::Index j = 0; j < outputs; ++j)
-    if (variance(j) > 0.0) out.memory(j) = std::max(1.0, 2.0 * sum(j) / variance(j) - 1.0);
+    if (out.variance(j) > 0.0) out.memory(j) = std::max(1.0, 2.0 * sum(j) / out.variance(j) - 1.0);
   return out;
 }
 

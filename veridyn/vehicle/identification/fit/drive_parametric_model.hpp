@@ -9,6 +9,7 @@
 
 #include "veridyn/estimation/open_loop/open_loop_model.hpp"
 #include "veridyn/estimation/output_error/autodiff_model.hpp"
+#include "veridyn/estimation/output_error/output_error.hpp"
 #include "veridyn/vehicle/identification/fit/drive_noise.hpp"
 #include "veridyn/vehicle/identification/options/drive_model_options.hpp"
 #include "veridyn/vehicle/identification/signals/drive_signals.hpp"
@@ -89,15 +90,9 @@ class DriveParametricModel
   /// What was measured of the outputs, per segment, smoothed; NaN where missing.
   [[nodiscard]] std::vector<estimation::RowMatrix> measured() const override;
 
-  /// What noise of the steering does to each output: its standard deviation, and in how many samples it is one
-  /// observation (variance of the mean of many over that of as many independent ones).
-  struct SteeringEffect {
-    Eigen::VectorXd sigma, memory;
-    Eigen::VectorXd autocovariance;  ///< its mean over the next estimation::kColourLags samples
-  };
-  /// Of what is left of that noise at `theta`, midway between slowest and fastest of the segments; 0 and 1 without
-  /// noise, or where the vehicle is unstable there.
-  [[nodiscard]] SteeringEffect steering_noise_effect(const Eigen::VectorXd& theta) const;
+  /// What noise of the steering that is left gives each output at `theta`, midway between slowest and fastest of the
+  /// segments; variances 0 and memories 1 without noise, or where the vehicle is unstable there.
+  [[nodiscard]] estimation::InputNoise steering_noise(const Eigen::VectorXd& theta) const;
 
   /// Fills `output`; false where the motion diverged. Compiled for double and Jets.
   template <typename Scalar>

@@ -336,15 +336,13 @@ OutputErrorProblem output_error_problem(const VehicleProblem& problem, const Equ
 
 void OutputErrorProblem::begin_at(const Eigen::VectorXd& theta) {
   options.search_start = within_bounds(model, theta);
-  const DriveParametricModel::SteeringEffect by_steering = model.steering_noise_effect(options.search_start);
-  options.input_noise = {by_steering.sigma.cwiseAbs2(), by_steering.autocovariance, by_steering.memory};
+  options.input_noise = model.steering_noise(options.search_start);
 }
 
 OutputErrorResult estimate_by_output_error(const VehicleProblem& problem, const EquationErrorEstimates* equation_error,
                                            const Eigen::VectorXd& search_start, SearchEffort effort,
                                            Progress& progress) {
   OutputErrorProblem given = output_error_problem(problem, equation_error);
-  if (effort == SearchEffort::kOnce) given.options.max_relaxations = 1;
   if (effort == SearchEffort::kToCompare) {
     given.options.max_relaxations = kRelaxationsToCompare;
     given.options.max_steps = kStepsToCompare;

@@ -44,8 +44,7 @@ struct OutputErrorResult {
 
 /// How far a search goes.
 enum class SearchEffort {
-  kOnce,       ///< one search with the noise that is left where it begins: what one more unknown would say
-  kToCompare,  ///< a few steps: enough to tell structures apart
+  kToCompare,  ///< a few steps: enough to distinguish structures
   kToTheEnd
 };
 

@@ -117,7 +117,11 @@ Evidence check_residual_on_holdout(const estimation::PredictedQuantity& there,
                                    const estimation::PredictedQuantity& here) {
   const double ratio = there.fit.rmse / here.fit.rmse;
   const double limit = estimation::info_of(Check::kHoldOutResidual).tolerance.high;
-  const bool systematic = there.lag1 > kAutocorrelatedFrom && (ratio > limit || !(here.lag1 > kAutocorrelatedFrom));
+  // What two autocorrelations of white residuals differ by (Bartlett 1946).
+  const double chance = estimation::kBeyondChance * std::sqrt(1.0 / static_cast<double>(there.fit.count) +
+                                                              1.0 / static_cast<double>(here.fit.count));
+  const bool there_alone = !(here.lag1 > kAutocorrelatedFrom) && there.lag1 - here.lag1 > chance;
+  const bool systematic = there.lag1 > kAutocorrelatedFrom && (ratio > limit || there_alone);
   Evidence row = row_of(Check::kHoldOutResidual, "yaw_rate", passed_or(!systematic, Outcome::kCare));
   if (systematic) row.cause = Cause::kMissingTerm;
   row.value = ratio;

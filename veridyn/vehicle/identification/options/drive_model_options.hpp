@@ -33,7 +33,7 @@ struct DriveModelOptions {
   /// Where the search begins; also the mean of the prior. NaN: by the vehicle's geometry, see `with_geometry`.
   PerDriveUnknown<double> start{};
   /// Standard deviation of what is known beforehand; infinite: nothing; NaN: by the geometry. At one constant speed the
-  /// biases of steering, yaw rate and lateral acceleration cannot be told apart without it.
+  /// biases of steering, yaw rate and lateral acceleration are not distinguishable without it.
   PerDriveUnknown<double> prior{};
   /// Cut-off of the kernel before the comparison [Hz]; 0: none; negative: by the steering's noise, which acts on the
   /// lateral acceleration at once (2 C_f/m times it): 0.1 deg of white noise at 100 Hz on 0.9 deg rms of slip takes

@@ -11,7 +11,7 @@ namespace veridyn::vehicle {
 /// What the identified model has.
 enum class DriveStructure : std::size_t {
   kBicycle,      ///< lateral velocity and yaw rate
-  kScaledAccel,  ///< the same, and an accelerometer whose scale is wrong: what roll has to be told from
+  kScaledAccel,  ///< the same, and an accelerometer whose scale is wrong: what roll must be distinguishable from
   kRoll,         ///< and the body's roll on its springs
   kRelaxation,   ///< and tyres whose slip follows after a relaxation length
   /// And tyres whose stiffness falls with their force (Fiala), with the load that moves from one wheel to the other;

@@ -79,8 +79,8 @@ std::vector<TimeSpan> excited_spans(const DriveSignals& signals, const DriveSegm
   const std::vector<double> power = recording::mean_square(lateral, half);
   std::vector<double> activity(power.size());
   std::ranges::transform(power, activity.begin(), [](double p) { return std::sqrt(p); });
-  constexpr recording::LeastActivity kLeast{.usual = 0.3, .least = 0.05};
-  least_mps2 = o.min_lateral_mps2.value_or(kLeast.of(activity, usable));
+  constexpr recording::LeastActivity kLeastActivity{.usual = 0.3, .least = 0.05};
+  least_mps2 = o.min_lateral_mps2.value_or(kLeastActivity.of(activity, usable));
   std::vector<TimeSpan> found = recording::stretches(
       signals.grid, signals.size(), [&](std::size_t k) { return usable[k] && activity[k] >= least_mps2; });
   drop_shorter(found, 0.0);

@@ -73,7 +73,7 @@ double share_moved_by_pedals(const VehicleProblem& problem) {
 
 }  // namespace
 
-DriveEffects effects_told(const VehicleProblem& problem) {
+DriveEffects distinguishable_effects(const VehicleProblem& problem) {
   DriveEffects effects{};
   effects[DriveEffect::kBank] = tells_bank(problem);
   effects[DriveEffect::kDownforce] = tells_downforce(problem);

@@ -18,6 +18,6 @@ inline constexpr double kPedalsBesideDownforce = 0.01;
 /// Which effects the identification segments of a drive can tell: what is tried where the study fixes none. A bank
 /// needs an accelerometer and more than one segment: what all have in common is its bias. Downforce needs speeds of
 /// which the squares differ by 200 m^2/s^2 (15 and 21 m/s), pedals an rms of about 1.2 m/s^2 (5 % of an axle's load).
-[[nodiscard]] DriveEffects effects_told(const VehicleProblem& problem);
+[[nodiscard]] DriveEffects distinguishable_effects(const VehicleProblem& problem);
 
 }  // namespace veridyn::vehicle

@@ -194,14 +194,14 @@ class Climb {
   /// they explain may have passed for more of a structure than there is, or have hidden some of it.
   void add_effects() {
     if (ladder_.empty() || contradicts() || progress_.interrupted() || is_exact(fits_.back())) return;
-    const DriveEffects told = effects_told(problem_);
+    const DriveEffects distinguishable = distinguishable_effects(problem_);
     const std::size_t without = choose_structure(ladder_.tried);
     std::size_t chosen = without;
     for (bool more = true; more && !progress_.interrupted();) {
       const std::size_t before = chosen;
       for (const DriveEffect effect : kAllDriveEffects) {
         DriveEffects effects = ladder_.tried[before].effects;
-        if (!told[effect] || effects[effect] || progress_.interrupted()) continue;
+        if (!distinguishable[effect] || effects[effect] || progress_.interrupted()) continue;
         effects[effect] = true;
         search_start_ = fits_[before].raw.theta;
         fit(ladder_.tried[before].structure, effects, options_[before].model.free[DriveUnknown::kRelaxationLength]);
@@ -307,7 +307,7 @@ std::string reason_of(const StructureLadder& ladder, bool contradicts) {
   } else if (ladder.tried.size() > 1) {
     reason += ": none richer makes the drive likelier";
   } else {
-    reason += contradicts ? ": the recording contradicts itself, and nothing richer was tried on it"
+    reason += contradicts ? ": the recording contradicts itself, and nothing richer was fitted to it"
                           : ": it leaves no more than rounding does";
   }
   return reason;

@@ -12,7 +12,7 @@
 
 namespace veridyn::vehicle {
 
-/// One structure that was fitted to the identification segments and tried on the hold-out.
+/// One structure that was fitted to the identification segments and validated on the hold-out.
 struct TriedStructure {
   DriveStructure structure = DriveStructure::kBicycle;
   DriveEffects effects = {};

@@ -116,7 +116,7 @@ std::vector<OpenLoopError> errors_of(const DriveParametricModel& model, const Dr
                                      const estimation::Estimate& estimate) {
   Eigen::VectorXd theta(signed_index(model.parameters().size()));
   for (Eigen::Index i = 0; i < theta.size(); ++i) theta(i) = model.parameters()[at(i)].start;
-  const DriveParametricModel::SteeringEffect by_steering = model.steering_noise_effect(theta);
+  const estimation::InputNoise by_steering = model.steering_noise(theta);
   std::vector<OpenLoopError> errors;
   for (const estimation::ModelOutput& output : model.outputs()) {
     const auto signal =
@@ -127,7 +127,7 @@ std::vector<OpenLoopError> errors_of(const DriveParametricModel& model, const Dr
     }
     const auto j = signed_index(errors.size());
     OpenLoopError error{.white = std::max(kRounding, signals[signal].sigma),
-                        .lasting = by_steering.sigma(j),
+                        .lasting = std::sqrt(by_steering.variance(j)),
                         .memory = by_steering.memory(j)};
     const double rmse = fit_of(estimate, output.name + ".rmse"), white = error.white * error.white;
     const double lasting = rmse * rmse - white;
