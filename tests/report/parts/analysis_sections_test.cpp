@@ -84,7 +84,7 @@ TEST(ParametersSection, SaysWhatAnIntervalConsistsOf) {
   const auto tables = blocks<Table>(parameters_section(analysis, ""));
   ASSERT_EQ(tables.size(), 1U);
   EXPECT_EQ(tables[0].columns.back().name, "interval by");
-  EXPECT_EQ(tables[0].rows[0].cells.back().text, "delays 62 %, noise 35 %");
+  EXPECT_EQ(tables[0].rows[0].cells.back().text, "delays 62\u00a0%, noise 35\u00a0%");
   EXPECT_EQ(tables[0].rows[1].cells.back().text, "");
   EXPECT_EQ(tables[0].rows[1].cells.size(), tables[0].columns.size());
 }

@@ -41,7 +41,8 @@ std::string shares_of(std::span<const estimation::IntervalPart> parts) {
   std::string words;
   for (const estimation::IntervalPart& part : sorted) {
     const double share = part.sigma * part.sigma / variance;
-    if (share >= kSmallest) words += fmt::format("{}{} {:.0f} %", words.empty() ? "" : ", ", part.words, 100.0 * share);
+    if (share >= kSmallest)
+      words += fmt::format("{}{} {:.0f}\u00a0%", words.empty() ? "" : ", ", part.words, 100.0 * share);
   }
   return words;
 }
