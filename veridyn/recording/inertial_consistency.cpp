@@ -194,14 +194,20 @@ InertialConsistency compare_velocity(const Recording& recording, const InertialS
   return out;
 }
 
+SensorNames accelerometer_names() {
+  return {"accelerometer",    "velocity and attitude",   {"x", "y", "z"},
+          Check::kSensorGain, Check::kAccelerometerBias, 1.0,
+          parse_unit("m/s^2")};
+}
+
 /// Where down comes later than north and east a filter has smoothed it, which takes from its fluctuations what a scale
-/// of the accelerometer and a bias against it would. Whose mean agrees is right, and of its z's gain nothing is known.
+/// of the accelerometer and a bias against it would. One that is right with a z of unit gain is right, and of that gain
+/// nothing is known.
 void leave_to_filter_of_down(InertialConsistency& found, const InertialConsistency& with_unit_z) {
   if (!with_unit_z.accelerometer) return;
-  const SensorMatrix& held = *with_unit_z.accelerometer;
-  const estimation::Tolerance& bias = estimation::info_of(Check::kAccelerometerBias).tolerance;
-  if (estimation::outcome_of(held.bias(2), held.bias_sigma(2), bias) != Outcome::kPassed) return;
-  found.accelerometer = held;
+  const std::vector<Evidence> rows = sensor_matrix_evidence(*with_unit_z.accelerometer, accelerometer_names());
+  if (!std::ranges::all_of(rows, &Evidence::passed)) return;
+  found.accelerometer = with_unit_z.accelerometer;
   found.velocity.reset();
 }
 
@@ -285,9 +291,7 @@ InertialConsistency inertial_consistency(const Recording& recording, std::span<c
 }
 
 std::vector<Evidence> inertial_evidence(const InertialConsistency& c) {
-  const SensorNames force{"accelerometer",    "velocity and attitude",   {"x", "y", "z"},
-                          Check::kSensorGain, Check::kAccelerometerBias, 1.0,
-                          parse_unit("m/s^2")};
+  const SensorNames force = accelerometer_names();
   const SensorNames velocity{"ground velocity",  "accelerometer and attitude", {"north", "east", "down"},
                              Check::kSensorGain, Check::kVelocityBias,         1.0,
                              parse_unit("m/s")};
