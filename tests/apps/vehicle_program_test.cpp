@@ -341,5 +341,17 @@ TEST_F(VehicleProgram, InspectSaysWhichUnitIsWrongAndItsLineMendsIt) {
   expect_refusal("inspect " + file("none.toml", "title = \"nothing\"\n"), "data: is missing");
 }
 
+// An angle that reads twice is the wheelbase of a longer car where the study does not say it.
+TEST_F(VehicleProgram, InspectOfAStudyKnowsTheWheelbase) {
+  const std::string study = logged("twice", [](double t) {
+    const double speed = 15.0 + 4.0 * std::sin(0.8 * t), rate = 0.1 * std::sin(0.5 * t) + 0.05 * std::sin(1.3 * t);
+    return std::array<double, 4>{2.0 * 2.5 * rate / speed, speed, rate, speed * rate};
+  });
+  const std::string text = run("inspect " + study).text;
+  EXPECT_THAT(text, ::testing::ContainsRegex("wrong: steer reads (1.9|2|2.0|2.1)[0-9]* times the truth"));
+  EXPECT_THAT(text, HasSubstr("correct it in [data.map]: steer = { channel = \"steer\", scale = "));
+  EXPECT_THAT(run("inspect " + (folder_ / "twice.csv").string()).text, HasSubstr("nothing contradicts"));
+}
+
 }  // namespace
 }  // namespace veridyn

@@ -83,7 +83,7 @@ std::string commented_line(const StudyKey& key) {
   const std::string left =
       fmt::format("# {} = {}", key.name, key.otherwise.empty() || key.in_words ? "..." : key.otherwise);
   // The rest of the sentence is in the docs.
-  std::string right = key.says.substr(0, key.says.find_first_of(";:"));
+  std::string right = key.says.substr(0, key.says.find(';'));
   if (key.range.find('`') != std::string::npos) right += ": " + key.range;
   if (key.in_words) right += "; by default " + key.otherwise;
   std::erase(right, '`');

@@ -152,47 +152,24 @@ Equations::Delays delays_over(const InertialSeries& s, const Window& window) {
   return delays;
 }
 
-/// How late the velocity is taken to be, and by how much of a first-order lag down is smoothed on top of it [s].
-struct VelocityLag {
-  double delay_s = 0.0, smoothing_s = 0.0;
-};
-
-/// Down's regressors at each moment of the grid behind a first-order lag, which begins again behind each hole.
-Eigen::Matrix<double, Eigen::Dynamic, kUnknowns> smoothed_down(const InertialSeries& s, double lag_s) {
-  const double share = 1.0 - std::exp(-s.grid.step / lag_s);
-  Eigen::Matrix<double, Eigen::Dynamic, kUnknowns> rows(signed_index(s.grid.count), kUnknowns);
-  Eigen::Matrix<double, 1, kUnknowns> state;
-  state.setConstant(kNaN);
-  for (std::size_t k = 0; k < s.grid.count; ++k) {
-    const Eigen::Matrix<double, 1, kUnknowns> now = regressors(ned_from_body(s, k), s.f(k)).row(2);
-    state = state.allFinite() && now.allFinite() ? (state + share * (now - state)).eval() : now;
-    rows.row(signed_index(k)) = state;
-  }
-  return rows;
-}
-
-/// What only the velocity says, all but `gyro`.
+/// What only the velocity says, all but `gyro`, with the velocity taken as `late_s` late and the gain of an axis that
+/// is not in `moved` as 1.
 InertialConsistency compare_velocity(const Recording& recording, const InertialSeries& s,
-                                     std::span<const TimeSpan> spans, const VelocityLag& lag) {
+                                     std::span<const TimeSpan> spans, double late_s,
+                                     const std::array<bool, 3>& moved = {true, true, true}) {
   InertialConsistency out;
   const Channel& north = recording.at("vel_north");
   const Channel& east = recording.at("vel_east");
   const Channel& down = recording.at("vel_down");
   if (east.size() != north.size() || down.size() != north.size()) return out;
   std::vector<double> stamps(north.times().begin(), north.times().end());
-  for (double& t : stamps) t -= lag.delay_s;
-  Eigen::Matrix<double, Eigen::Dynamic, kUnknowns> down_rows;
-  if (lag.smoothing_s > 0.0) down_rows = smoothed_down(s, lag.smoothing_s);
+  for (double& t : stamps) t -= late_s;
   const Vector3 gravity(0.0, 0.0, kGravity);
   Equations by_force(change_noise({&north, &east, &down}, kVelocityWindow_s)), by_velocity(kInfinity);
   for (const Window& window : windows(stamps, spans, kVelocityWindow_s, kVelocityHop_s)) {
     const auto v = [&](std::size_t i) { return Vector3(north.value[i], east.value[i], down.value[i]); };
     const Vector3 acceleration = (v(window.last) - v(window.first)) / (window.end - window.begin);
-    const auto X = mean_over(window, s.grid, [&](std::size_t k) {
-      auto at_moment = regressors(ned_from_body(s, k), s.f(k));
-      if (down_rows.rows() > 0) at_moment.row(2) = down_rows.row(signed_index(k));
-      return at_moment;
-    });
+    const auto X = mean_over(window, s.grid, [&](std::size_t k) { return regressors(ned_from_body(s, k), s.f(k)); });
     Equations::Delays delays = delays_over(s, window);
     // North of the attitude is not that of the velocity: magnetic declination, or a compass that was not turned.
     const Vector3 force = X.col(0) + X.col(4) + X.col(8);
@@ -204,48 +181,58 @@ InertialConsistency compare_velocity(const Recording& recording, const InertialS
     delays.col(3).setZero();
     by_velocity.add(regressors(Matrix3::Identity(), acceleration), said, -delays);
   }
-  if (const std::optional<Solved> force = by_force.solve(true)) {
+  if (const std::optional<Solved> force = by_force.solve(true, moved)) {
     out.accelerometer = force->matrix;
     out.accelerometer_delay = force->delay(0);
     out.accelerometer_delay_sigma = force->delay_sigma(0);
-    out.velocity_delay = lag.delay_s + force->delay(1);
+    out.velocity_delay = late_s + force->delay(1);
     out.velocity_delay_sigma = force->delay_sigma(1);
-    out.vertical_delay = lag.delay_s + lag.smoothing_s + force->delay(2);
+    out.vertical_delay = late_s + force->delay(2);
     out.vertical_delay_sigma = force->delay_sigma(2);
   }
   if (std::optional<Solved> velocity = by_velocity.solve(true)) out.velocity = velocity->matrix;
   return out;
 }
 
-/// The same with the velocity shifted by the delay that is found, which is linear only where it is small, and then with
-/// down smoothed by what it comes later still: what a filter takes from the vertical speed is no scale of the
-/// accelerometer.
+SensorNames accelerometer_names() {
+  return {"accelerometer",    "velocity and attitude",   {"x", "y", "z"},
+          Check::kSensorGain, Check::kAccelerometerBias, 1.0,
+          parse_unit("m/s^2")};
+}
+
+/// Where down comes later than north and east a filter has smoothed it, which takes from its fluctuations what a scale
+/// of the accelerometer and a bias against it would. One that is right with a z of unit gain is right, and of that gain
+/// nothing is known.
+void leave_to_filter_of_down(InertialConsistency& found, const InertialConsistency& with_unit_z) {
+  if (!with_unit_z.accelerometer) return;
+  const std::vector<Evidence> rows = sensor_matrix_evidence(*with_unit_z.accelerometer, accelerometer_names());
+  if (!std::ranges::all_of(rows, &Evidence::passed)) return;
+  found.accelerometer = with_unit_z.accelerometer;
+  found.velocity.reset();
+}
+
+/// The same with the velocity shifted by the delay that is found, which is linear only where it is small.
 InertialConsistency compare_velocity(const Recording& recording, const InertialSeries& s,
                                      std::span<const TimeSpan> spans) {
   constexpr int kMostSteps = 4;
   constexpr double kSmall_s = 0.03, kLargest_s = 2.0;
-  VelocityLag lag;
-  InertialConsistency out = compare_velocity(recording, s, spans, lag);
-  const auto conspicuous = [&](double more, double sigma) {
-    return std::abs(more) >= std::max(kSmall_s, estimation::kBeyondChance * sigma);
+  const auto conspicuous = [&](double delay_s, double sigma_s) {
+    return std::abs(delay_s) >= std::max(kSmall_s, estimation::kBeyondChance * sigma_s);
   };
-  const auto improves = [&](const VelocityLag& next) {
-    InertialConsistency changed = compare_velocity(recording, s, spans, next);
-    if (!changed.accelerometer || !(changed.accelerometer->unexplained() < out.accelerometer->unexplained()))
-      return false;
-    out = std::move(changed);
-    lag = next;
-    return true;
-  };
+  InertialConsistency out = compare_velocity(recording, s, spans, 0.0);
+  double late_s = 0.0;
   for (int step = 0; step < kMostSteps && out.accelerometer; ++step) {
-    if (!conspicuous(out.velocity_delay - lag.delay_s, out.velocity_delay_sigma)) break;
-    if (!(std::abs(out.velocity_delay) < kLargest_s) || !improves({out.velocity_delay, 0.0})) break;
+    const double more = out.velocity_delay - late_s;
+    if (!conspicuous(more, out.velocity_delay_sigma)) break;
+    late_s += more;
+    if (!(std::abs(late_s) < kLargest_s)) break;
+    InertialConsistency shifted = compare_velocity(recording, s, spans, late_s);
+    if (!shifted.accelerometer || !(shifted.accelerometer->unexplained() < out.accelerometer->unexplained())) break;
+    out = std::move(shifted);
   }
-  for (int step = 0; step < kMostSteps && out.accelerometer; ++step) {
-    const double smoothing = out.vertical_delay - lag.delay_s;
-    if (!conspicuous(smoothing - lag.smoothing_s, out.vertical_delay_sigma)) break;
-    if (!(smoothing > 0.0 && smoothing < kLargest_s) || !improves({lag.delay_s, smoothing})) break;
-  }
+  const double lag_s = out.vertical_delay - out.velocity_delay;
+  if (out.accelerometer && lag_s > 0.0 && conspicuous(lag_s, out.vertical_delay_sigma))
+    leave_to_filter_of_down(out, compare_velocity(recording, s, spans, out.velocity_delay, {true, true, false}));
   return out;
 }
 
@@ -304,9 +291,7 @@ InertialConsistency inertial_consistency(const Recording& recording, std::span<c
 }
 
 std::vector<Evidence> inertial_evidence(const InertialConsistency& c) {
-  const SensorNames force{"accelerometer",    "velocity and attitude",   {"x", "y", "z"},
-                          Check::kSensorGain, Check::kAccelerometerBias, 1.0,
-                          parse_unit("m/s^2")};
+  const SensorNames force = accelerometer_names();
   const SensorNames velocity{"ground velocity",  "accelerometer and attitude", {"north", "east", "down"},
                              Check::kSensorGain, Check::kVelocityBias,         1.0,
                              parse_unit("m/s")};

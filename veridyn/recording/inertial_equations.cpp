@@ -147,9 +147,8 @@ Equations::Estimate Equations::estimate(const Moved& moved, bool delays) const {
   return all;
 }
 
-std::optional<Solved> Equations::solve(bool delays) const {
+std::optional<Solved> Equations::solve(bool delays, Moved moved) const {
   if (rows_.size() < kFewestWindows) return std::nullopt;
-  Moved moved{true, true, true};
   Estimate found = estimate(moved, delays);
   // One axis after the other: what one that rests leaves to the others is then theirs.
   for (int step = 0; step < 3; ++step) {

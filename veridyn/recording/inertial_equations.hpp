@@ -47,7 +47,8 @@ class Equations {
     rows_.push_back(row);
   }
   /// @param delays  whether they, and the zero of the heading, are unknown too
-  [[nodiscard]] std::optional<Solved> solve(bool delays) const;
+  /// @param moved   axes whose gain is not taken as 1 from the start
+  [[nodiscard]] std::optional<Solved> solve(bool delays, std::array<bool, 3> moved = {true, true, true}) const;
 
  private:
   struct Row {

@@ -27,7 +27,7 @@ cueing::CueingResult runs(const std::vector<PlatformState>& states, std::size_t 
     for (std::size_t k = 0; k < states.size(); ++k) {
       a.run.vehicle.push_back({});
       a.run.vehicle.back().time = 5.0 + 0.01 * static_cast<double>(k);
-      a.run.steps.push_back({.wanted = {}, .told = {}, .reached = states[k]});
+      a.run.steps.push_back({.desired = {}, .ordered = {}, .reached = states[k]});
     }
     result.algorithms.push_back(std::move(a));
   }

@@ -46,7 +46,7 @@ inline constexpr int kDriveStride = 12;
 ///
 /// Noise of the recorded steering would take some of every gain away. By default the steering is therefore low-passed
 /// to its own band (`numerics::band_limited`), and the outputs are not; the noise left in that band moves the model,
-/// and the residual is coloured by it (`steering_noise_effect`), which intervals allow for. A filter that takes the
+/// and the residual is coloured by it (`steering_noise`), which intervals allow for. A filter that takes the
 /// colour out would make them smaller, and wrong: it weighs most what the steering's noise distorts most, whose
 /// derivatives have the same noise as the residual, and drew delays of drives without any to -25 ms. With
 /// `DriveModelOptions::smoothing_Hz` inputs and outputs are smoothed alike instead: a linear time-invariant system
