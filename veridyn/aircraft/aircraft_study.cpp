@@ -19,6 +19,7 @@
 #include "veridyn/aircraft/identification/validation/evaluated_estimate.hpp"
 #include "veridyn/aircraft/reconstruction/filter_comparison.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct_streams.hpp"
+#include "veridyn/aircraft/sensors/accelerometer_at_centre.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/estimation/judgement/check.hpp"
 
@@ -93,10 +94,15 @@ Reconstruction motion_of(const Recording& recording, const ReconstructOptions& o
 PreparedFlight reconstructed(const FlightStudy& study, const ReconstructOptions& options, Progress& progress) {
   check_flight(study);
   progress.stage("aligning sensor delays");
+  MappedRecording at_centre = study.mapped;
+  at_centre.recording = with_accelerometer_at_centre(std::move(at_centre.recording), study.subject.imu_position);
   AlignedRecording aligned = align_delays(
-      study.mapped, internal::alignment_of(study.mapped.recording, study.delays, study.reconstruct), progress);
+      std::move(at_centre), internal::alignment_of(study.mapped.recording, study.delays, study.reconstruct), progress);
   PreparedFlight flight;
   flight.aligned = std::move(aligned.mapped);
+  // Signals and filters move it by smoother angular accelerations.
+  for (const char* name : {"accel_x", "accel_y", "accel_z"})
+    if (const Channel* recorded = study.mapped.recording.find(name)) flight.aligned.recording.set(*recorded);
   flight.delays = std::move(aligned.delays);
   flight.reconstruction.interrupted = progress.interrupted();
   if (flight.reconstruction.interrupted) return flight;
@@ -136,13 +142,15 @@ PreparedFlight prepared(const FlightStudy& study, Progress& progress) {
     flight.segments = recorded_flight(flight.aligned.recording, study.segments.min_airspeed_mps);
   }
   progress.stage("checking the recording");
-  CheckedFlight checked = recording_evidence(flight.aligned.recording, flight.reconstruction, options, flight.segments,
-                                             flight.delays, progress.threads(), study.known_sensors);
+  CheckedFlight checked =
+      recording_evidence(flight.aligned.recording, flight.reconstruction, options, flight.segments, flight.delays,
+                         progress.threads(), study.known_sensors, study.subject.imu_position);
   flight.recording_evidence = std::move(checked.rows);
   if (flight.usable()) {
     flight.budget.add(checked.errors);
     for (std::string& note : lag_notes(flight.budget)) flight.signals.notes.push_back(std::move(note));
     flight.signals = without_errors(std::move(flight.signals), flight.budget.errors);
+    know_gusts_across(flight, study.subject);
     for (const auto& further : {accelerometer_place, air_errors}) {
       const std::vector<SensorError> errors = further(flight, study.subject, study.known_sensors);
       flight.budget.add(errors);

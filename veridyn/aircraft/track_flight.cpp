@@ -139,9 +139,10 @@ std::vector<FlightChange> TrackedFlight::advance(const MappedRecording& mapped, 
 void TrackedFlight::judge_recording(const MappedRecording& mapped, const FlightStudy& study,
                                     const Reconstruction& reconstruction, const FlightSignals& signals,
                                     std::span<const DelayReport> delays) {
-  recording_evidence_ = recording_evidence(mapped.recording, reconstruction, study.reconstruct,
-                                           excited_segments(signals, study.segments), delays)
-                            .rows;
+  recording_evidence_ =
+      recording_evidence(mapped.recording, reconstruction, study.reconstruct, excited_segments(signals, study.segments),
+                         delays, 0, {}, study.subject.imu_position)
+          .rows;
 }
 
 void TrackedFlight::check_recording(const MappedRecording& mapped, const FlightStudy& study,

@@ -54,7 +54,7 @@ Identified flown_without(FlightStudy study, const Stripped& stripped) {
   using enum SensorErrorKind;
   for (const SensorErrorKind kind : {kZeroX, kZeroY, kZeroZ, kPlaceX, kPlaceY, kPlaceZ})
     study.known_sensors.errors.push_back({BudgetSensor::kAccelerometer, kind, 0.0, 0.0});
-  for (const SensorErrorKind kind : {kGustTurn, kDownwash})
+  for (const SensorErrorKind kind : {kGustRoll, kGustPitch, kGustYaw, kDownwash})
     study.known_sensors.errors.push_back({BudgetSensor::kAir, kind, 0.0, 0.0});
   return testing::identified(study);
 }

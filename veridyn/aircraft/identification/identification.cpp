@@ -98,8 +98,9 @@ Eigen::MatrixXd sensitivity_to_sensors(const CoefficientFit& fit, const FlightVi
     if (fit.rows.rows_of(i) == 0) continue;
     columns += sensor_sensitivity(
         flight.signals, flight.budget, fit.model.coefficient, fit.of_rows, [&](const FlightSignals& changed) {
+          const bool same = changed.air_rates.error_of_roll() == flight.signals.air_rates.error_of_roll();
           RegressionData data = coefficient_rows(fit.model, view.flights, RowUse::kIdentification, view.subject,
-                                                 &flight, &changed, &fit.rows.data.error_covariance)
+                                                 &flight, &changed, same ? &fit.rows.data.error_covariance : nullptr)
                                     .data;
           const auto n = data.parameters();
           data.error_covariance(n, n) = equation_error(data).variance;

@@ -8,11 +8,19 @@
 
 namespace veridyn::aircraft {
 
-GustGradients::GustGradients(const DrydenSettings& settings, double span, numerics::RandomStream random)
-    : roll_length_(4.0 * span / kPi), yaw_length_(3.0 * span / kPi), random_(random) {
+double gust_roll_length(double span) { return 4.0 * span / kPi; }
+
+double gust_roll_sigma(const DrydenSettings& settings, double span) {
+  const double length = gust_roll_length(span);
   // The integral of the spectrum: that of 1/(1 + (l W)^2) is pi/(2 l).
-  roll_sigma_ =
-      settings.sigma_w * std::sqrt(0.4 * kPi / (settings.Lw * roll_length_) * std::cbrt(settings.Lw / roll_length_));
+  return settings.sigma_w * std::sqrt(0.4 * kPi / (settings.Lw * length) * std::cbrt(settings.Lw / length));
+}
+
+GustGradients::GustGradients(const DrydenSettings& settings, double span, numerics::RandomStream random)
+    : roll_length_(gust_roll_length(span)),
+      yaw_length_(3.0 * span / kPi),
+      roll_sigma_(gust_roll_sigma(settings, span)),
+      random_(random) {
   p_ = random_.normal();
 }
 

@@ -7,6 +7,12 @@
 
 namespace veridyn::aircraft {
 
+/// Standard deviation of p_g, below [rad/s].
+/// @param span b [m]
+[[nodiscard]] double gust_roll_sigma(const DrydenSettings& settings, double span);
+/// Distance over which it correlates with itself, 4b/pi [m].
+[[nodiscard]] double gust_roll_length(double span);
+
 /// Gradients of Dryden gusts over the aircraft, as rates that act like additional body rates in the aerodynamics
 /// (MIL-F-8785C; b is the span, s along the path):
 ///

@@ -150,5 +150,16 @@ TEST(FlightDelays, AZeroOfThePitotTubeIsCorrectedAndInTheIntervals) {
   EXPECT_GE(slope.parameter.high95, truth);
 }
 
+TEST(LagNotes, NameSurfacesThatFollowACommand) {
+  using enum BudgetSensor;
+  SensorBudget budget;
+  budget.add({{kElevator, SensorErrorKind::kLag, 0.06, 0.01},
+              {kAileron, SensorErrorKind::kLag, 0.015, 0.01},
+              {kRudder, SensorErrorKind::kDelay, 0.06, 0.01}});
+  const std::vector<std::string> notes = lag_notes(budget);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_TRUE(notes.front().starts_with("elevator")) << notes.front();
+}
+
 }  // namespace
 }  // namespace veridyn::aircraft

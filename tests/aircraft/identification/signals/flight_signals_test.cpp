@@ -93,6 +93,20 @@ TEST(FlightSignals, MoveTheAccelerometerToTheCentreOfGravity) {
   EXPECT_NEAR(there[F::kAx].value[middle(there)], -2.0, 1e-9);
 }
 
+// Ten metres ahead of the centre of gravity the noise of yaw acceleration is most of that of the side force.
+TEST(FlightSignals, GiveAMovedAccelerometerTheNoiseOfTheAngularAccelerations) {
+  FormulaFlight flight;
+  SignalOptions options;
+  options.noise = {{"gyro_x", 0.002}, {"gyro_y", 0.002}, {"gyro_z", 0.002}, {"accel_y", 0.05}};
+  const FlightSignals there = flight.prepared(options);
+  const double in_place = there[F::kAy].sigma;
+  flight.subject.imu_position = {10.0, 0.0, 0.0};
+  const FlightSignals moved = flight.prepared(options);
+  EXPECT_NEAR(moved[F::kAy].sigma, std::hypot(in_place, 10.0 * there[F::kRdot].sigma), 1e-12);
+  EXPECT_GT(moved[F::kAy].sigma, 2.0 * in_place);
+  EXPECT_EQ(moved[F::kAx].sigma, there[F::kAx].sigma);
+}
+
 TEST(FlightSignals, TakeTheVaneLessItsBiasOrTheSmoothersAngle) {
   FormulaFlight flight;
   flight.record("alpha", "rad", 0.1);

@@ -135,7 +135,19 @@ FlightSignals with_error(FlightSignals signals, BudgetSensor sensor, SensorError
   if (sensor == BudgetSensor::kAir) {
     AirRates& air = signals.air_rates;
     // The share in the regressors is what is thought to be there: an error more is so much less of it.
-    (kind == SensorErrorKind::kGustTurn ? air.turn_share : air.downwash_share) -= size;
+    switch (kind) {
+      case SensorErrorKind::kGustRoll:
+        air.roll_share -= size;
+        break;
+      case SensorErrorKind::kGustPitch:
+        air.pitch_share -= size;
+        break;
+      case SensorErrorKind::kGustYaw:
+        air.yaw_share -= size;
+        break;
+      default:
+        air.downwash_share -= size;
+    }
     return signals;
   }
   if (sensor == BudgetSensor::kAirDensity) {

@@ -32,21 +32,24 @@ enum class SensorErrorKind {
   kPlaceX,  ///< of the accelerometer, from where it is taken to be, along a body axis [m]
   kPlaceY,
   kPlaceZ,
-  kGustTurn,  ///< of the rates q_g and r_g that gusts give the air along the aircraft, share of MIL-F-8785C's
-  kDownwash   ///< of the parameters by q: the part that is the downwash's, which comes late
+  kGustRoll,   ///< of the rate p_g that gusts give the air across the span, share of the variance of MIL-F-8785C's
+  kGustPitch,  ///< of the rate q_g that they give it along the aircraft, share of MIL-F-8785C's
+  kGustYaw,    ///< likewise of r_g
+  kDownwash    ///< of the parameters by q: the part that is the downwash's, which comes late
 };
-inline constexpr std::size_t kSensorErrorKinds = 12;  ///< values of SensorErrorKind
+inline constexpr std::size_t kSensorErrorKinds = 14;  ///< values of SensorErrorKind
 /// As in studies.
 inline constexpr EnumArray<SensorErrorKind, std::string_view, kSensorErrorKinds> kSensorErrorKindNames{
-    {"scale", "zero", "delay", "lag", "zero_x", "zero_y", "zero_z", "place_x", "place_y", "place_z", "gust_turn",
-     "downwash"}};
+    {"scale", "zero", "delay", "lag", "zero_x", "zero_y", "zero_z", "place_x", "place_y", "place_z", "gust_roll",
+     "gust_pitch", "gust_yaw", "downwash"}};
 /// What it is, in words.
 inline constexpr EnumArray<SensorErrorKind, std::string_view, kSensorErrorKinds> kSensorErrorKindMeanings{
     {"reading over truth", "reading less truth; of the airspeed in its pressure", "from event to time stamp",
      "time constant with which the surface follows what is recorded; 0 where its position is",
      "reading less truth along the body's x", "likewise along y", "likewise along z",
      "where it is, less where `imu_position` says, along the body's x", "likewise along y", "likewise along z",
-     "share of the q_g and r_g that MIL-F-8785C gives gusts along the aircraft",
+     "share of the variance of the p_g that MIL-F-8785C gives gusts across the span",
+     "share of the q_g that it gives gusts along the aircraft", "likewise of r_g",
      "part of the parameters by q that is the downwash's and comes late"}};
 
 /// The signals that a sensor measures; none of the air density, which is no `FlightSignal`.

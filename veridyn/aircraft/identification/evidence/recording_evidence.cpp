@@ -13,6 +13,7 @@
 #include "veridyn/aircraft/identification/evidence/contradicted_flight.hpp"
 #include "veridyn/aircraft/identification/evidence/missing_sensor_evidence.hpp"
 #include "veridyn/aircraft/reconstruction/corrected_flow.hpp"
+#include "veridyn/aircraft/sensors/accelerometer_at_centre.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/judgement/check.hpp"
 #include "veridyn/numerics/threads/parallel.hpp"
@@ -287,13 +288,17 @@ Evidence deflection_row(const Recording& recording) {
 
 CheckedFlight recording_evidence(const Recording& recording, const Reconstruction& reconstruction,
                                  const ReconstructOptions& options, const Segments& segments,
-                                 std::span<const DelayReport> delays, int threads, const KnownSensors& known) {
+                                 std::span<const DelayReport> delays, int threads, const KnownSensors& known,
+                                 const std::array<double, 3>& imu_position) {
   // What takes time, side by side.
   std::vector<Evidence> samples = sample_rows(recording, segments, threads);
   recording::InertialConsistency inertial;
   CheckedFlight air_data;
+  const bool at_centre = std::ranges::all_of(imu_position, [](double x) { return x == 0.0; });
+  const Recording moved = at_centre ? Recording() : with_accelerometer_at_centre(recording, imu_position);
+  const Recording& motion = at_centre ? recording : moved;
   const std::array<std::function<void()>, 2> checks{
-      [&] { inertial = recording::inertial_consistency(recording, segments.airborne); },
+      [&] { inertial = recording::inertial_consistency(motion, segments.airborne); },
       [&] {
         const FlowSensors vanes = flow_sensors(options, reconstruction.smoothed);
         const auto check = [&](const Recording& of) {
@@ -301,8 +306,8 @@ CheckedFlight recording_evidence(const Recording& recording, const Reconstructio
         };
         air_data =
             vanes.exact()
-                ? check(recording)
-                : check(with_corrected_flow({.recording = recording}, vanes, reconstruction.smoothed).mapped.recording);
+                ? check(motion)
+                : check(with_corrected_flow({.recording = motion}, vanes, reconstruction.smoothed).mapped.recording);
       }};
   numerics::parallel_for(checks.size(), threads, [&](std::size_t i) { checks[i](); });
 

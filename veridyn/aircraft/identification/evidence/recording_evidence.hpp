@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "veridyn/aircraft/identification/budget/sensor_priors.hpp"
@@ -16,9 +17,11 @@ namespace veridyn::aircraft {
 /// @param delays   what the alignment of the clocks found
 /// @param known    what the study knows of the sensors: the priors of their errors
 /// @param threads  0: as many as the machine has
+/// @param imu_position  of the accelerometer, which is compared as if it was at the centre of gravity [m]
 [[nodiscard]] CheckedFlight recording_evidence(const Recording& recording, const Reconstruction& reconstruction,
                                                const ReconstructOptions& options, const Segments& segments,
                                                std::span<const DelayReport> delays = {}, int threads = 0,
-                                               const KnownSensors& known = {});
+                                               const KnownSensors& known = {},
+                                               const std::array<double, 3>& imu_position = {});
 
 }  // namespace veridyn::aircraft

@@ -24,8 +24,10 @@ Eigen::MatrixXd sensor_sensitivity(const FlightSignals& signals, const SensorBud
   for (std::size_t i = 0; i < errors.size(); ++i) {
     const SensorError& error = errors[i];
     if (!(error.sigma > 0.0) || !rests_on(coefficient, error.sensor)) continue;
-    const Eigen::VectorXd changed = estimate(with_error(signals, error.sensor, error.kind, kStep * error.sigma));
-    if (changed.size() == theta.size()) changes.col(signed_index(i)) = (changed - theta) / kStep;
+    // A variance cannot become less than none.
+    const double step = error.kind == SensorErrorKind::kGustRoll ? -kStep : kStep;
+    const Eigen::VectorXd changed = estimate(with_error(signals, error.sensor, error.kind, step * error.sigma));
+    if (changed.size() == theta.size()) changes.col(signed_index(i)) = (changed - theta) / step;
   }
   changes *= root_of_correlation(budget);
   Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(theta.size(), kSensorErrors);

@@ -111,6 +111,9 @@ Eigen::MatrixXd row_error_covariance(const CoefficientModel& model, const Flight
   }
   Eigen::MatrixXd W = row.jacobian * classical.asDiagonal() * row.jacobian.transpose();
   W(n, n) += row.jacobian.row(n).cwiseAbs2().dot(berkson);
+  // Where the aircraft rolls with a gust, it does not roll against the air; the rolling itself is as recorded.
+  const Eigen::VectorXd by_roll = row.jacobian.col(static_cast<Eigen::Index>(FlightSignal::kP)).head(n);
+  W.topLeftCorner(n, n) += signals.air_rates.error_of_roll() * by_roll * by_roll.transpose();
   return W;
 }
 

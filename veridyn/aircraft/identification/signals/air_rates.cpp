@@ -28,8 +28,8 @@ std::vector<double> slope_along(const std::vector<double>& x, const std::vector<
 FlightSample<double> AirRates::against_air(FlightSample<double> sample, std::size_t k) const {
   using F = FlightSignal;
   if (gust_q.empty()) return sample;
-  sample[F::kQ] += turn_share * gust_q[k] + downwash_share * downwash_q[k];
-  sample[F::kR] += turn_share * gust_r[k];
+  sample[F::kQ] += pitch_share * gust_q[k] + downwash_share * downwash_q[k];
+  sample[F::kR] += yaw_share * gust_r[k];
   return sample;
 }
 

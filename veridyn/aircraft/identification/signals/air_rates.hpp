@@ -19,7 +19,14 @@ struct AirRates {
   std::vector<double> gust_q, gust_r;
   /// What alpha' of a tail three chords behind the wing differs by from alpha' in still air [rad/s].
   std::vector<double> downwash_q;
-  double turn_share = 0.0, downwash_share = 0.0;
+  double pitch_share = 0.0, yaw_share = 0.0, downwash_share = 0.0;
+  /// Of gusts across the span nothing is recorded but the roll with which the aircraft answers them: what of the
+  /// variance of p that would be by MIL-F-8785C, and that of p_g itself [rad^2/s^2]; 0 where it is not known.
+  double answered_roll = 0.0, gust_roll = 0.0;
+  double roll_share = 0.0;
+
+  /// How much of the variance of the recorded p is no motion against the air [rad^2/s^2].
+  [[nodiscard]] double error_of_roll() const { return roll_share > 0.0 ? roll_share * answered_roll : 0.0; }
 
   /// The sample with the rates against the air at grid point k.
   [[nodiscard]] FlightSample<double> against_air(FlightSample<double> sample, std::size_t k) const;

@@ -14,6 +14,7 @@
 #include "veridyn/aircraft/model/atmosphere.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/core/study_keys.hpp"
 #include "veridyn/numerics/rotation.hpp"
@@ -154,6 +155,13 @@ std::array<GridSignal, 3> force_at_centre_of_gravity(const InertialSignals& at_s
     const Eigen::Vector3d w = at(at_sensor.rate), dw = at(at_sensor.rate_derivative);
     const Eigen::Vector3d lever = dw.cross(r) + w.cross(w.cross(r));
     for (std::size_t i = 0; i < 3; ++i) force[i].value[k] -= lever(i);
+  }
+  // With the noise of the angular accelerations that it was moved by; that of the rates is small beside it.
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const Eigen::Index j = (i + 1) % 3, l = (i + 2) % 3;
+    const double by_j = at_sensor.rate_derivative[at(j)].sigma * r(l);
+    const double by_l = at_sensor.rate_derivative[at(l)].sigma * r(j);
+    force[at(i)].sigma = std::hypot(force[at(i)].sigma, by_j, by_l);
   }
   return force;
 }
