@@ -24,7 +24,8 @@ inline cueing::AlgorithmResult algorithm_by_hand(std::string name, double pearso
   a.felt.felt[Cue::kSurge] = {.vehicle = {0.0, -2.0, 0.0}, .platform = {0.0, -1.0, 0.0}};
   a.felt.felt[Cue::kRoll] = {.vehicle = {0.0, 6.0 * kDegree, 0.0}, .platform = {0.0, 3.0 * kDegree, 0.0}};
   a.score.cues[Cue::kSurge].pearson = {.value = pearson, .low = kNaN, .high = kNaN};
-  for (std::size_t k = 0; k < a.felt.time.size(); ++k) a.run.steps.push_back({.desired = {}, .ordered = {}, .reached = {}});
+  for (std::size_t k = 0; k < a.felt.time.size(); ++k)
+    a.run.steps.push_back({.desired = {}, .ordered = {}, .reached = {}});
   return a;
 }
 

@@ -177,6 +177,18 @@ TEST(DriveEvidence, SaysWhatIsTakenAsGiven) {
 }
 
 // A sixth of the rows with the stamp of the row before, as a logger with coarse stamps writes them.
+// What the yaw rate of a car that goes straight does is noise, whatever its share.
+TEST(DriveEvidence, ASteeringThatIsStraightAllTheTimeIsNotFrozen) {
+  const VehicleTrajectory straight = drive_bicycle<BicycleModel<double, LinearTyre<double>>>(
+      [](double) { return testing::linear_bicycle(family_car()); }, 40.0, [](double) { return 0.0; },
+      [](double) { return 15.0; });
+  Recording recording = record_drive(straight, reference_drive_sensors(), 1);
+  Channel steer = recording.at("steer");
+  std::ranges::fill(steer.value, 0.0);
+  recording.set(std::move(steer));
+  EXPECT_EQ(find_row(judged(recording, family_car()).rows, Check::kFrozenSteering), nullptr);
+}
+
 TEST(DriveEvidence, SaysThatStampsAreRepeated) {
   Recording recording = record_drive(varied_drive(3), with_positions(), 3);
   EXPECT_EQ(find_row(judged(recording, family_car()).rows, Check::kStamps), nullptr);

@@ -44,8 +44,8 @@ std::vector<Evidence> drive_sample_rows(const Recording& recording, const DriveS
 std::optional<Evidence> frozen_steering(const DriveSignals& signals, std::span<const TimeSpan> spans) {
   const double longest_s = estimation::info_of(Check::kFrozenSteering).tolerance.high;
   constexpr double kSettles_s = 1.0;
-  /// Of the yaw rate's scatter over the drive.
-  constexpr double kLimit = 0.3;
+  /// Of the yaw rate's scatter over the drive, and of a drive that turns at all [rad/s].
+  constexpr double kLimit = 0.3, kTurns = 0.01;
   const std::vector<double>& steer = signals[DriveSignal::kSteer].value;
   if (steer.empty()) return std::nullopt;
   const std::vector<double> r =
@@ -56,10 +56,11 @@ std::optional<Evidence> frozen_steering(const DriveSignals& signals, std::span<c
       if (std::isfinite(r[k])) sum += r[k], squares += r[k] * r[k], n += 1.0;
     return n < 2.0 ? 0.0 : std::sqrt(std::max(0.0, squares / n - sum * sum / (n * n)));
   };
+  const double all = scatter(0, r.size());
+  if (all < kTurns) return std::nullopt;
   double moving = 0.0, total = 0.0, at = 0.0;
   for (const TimeSpan& span : spans) {
     const auto [first, last] = signals.indices(span);
-    const double all = scatter(0, r.size());
     for (std::size_t k = first; k < last;) {
       std::size_t end = k + 1;
       while (end < last && steer[end] == steer[k]) ++end;
