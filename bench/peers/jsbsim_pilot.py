@@ -13,7 +13,6 @@ from jsbsim_aircraft import FLAT_PLANET, FOOT, POUND
 
 SLUG = POUND / FOOT
 STEP_S, EVERY = 0.005, 4  # recorded at 50 Hz
-KNOT = 1852.0 / 3600.0
 DEG = numpy.pi / 180.0
 
 

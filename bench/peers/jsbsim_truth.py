@@ -2,8 +2,8 @@
 
 An aircraft of the `jsbsim` package is trimmed over a flat planet and flown by a pilot of our own: 3-2-1-1 and doublets
 of elevator, aileron and rudder in two legs with a turn between them, in calm air or in JSBSim's turbulence, which has
-p_g, q_g and r_g (its q_g with the sign against that of w_g that a row of gusts does not have). It is recorded by
-ordinary sensors and identified by the study that a user writes who knows mass, inertia and geometry. JSBSim's
+p_g, q_g and r_g (its q_g has the other sign than a gust that meets the nose first gives it). It is recorded by ordinary
+sensors and identified by the study that a user writes who knows mass, inertia and geometry. JSBSim's
 aerodynamic moments are about the centre of gravity, as ours. As a program, a table of all aircraft and airs:
 
     python jsbsim_truth.py SEED SEED ...            # -v: and every interval that does not hold

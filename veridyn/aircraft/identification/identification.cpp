@@ -11,6 +11,7 @@
 #include "veridyn/aircraft/identification/fit/coefficient_description.hpp"
 #include "veridyn/aircraft/identification/fit/coefficient_fit.hpp"
 #include "veridyn/aircraft/identification/fit/error_variance.hpp"
+#include "veridyn/aircraft/identification/fit/model_error.hpp"
 #include "veridyn/aircraft/identification/fit/sensor_width.hpp"
 #include "veridyn/aircraft/identification/output_error/chosen_output_error.hpp"
 #include "veridyn/aircraft/identification/rows/coefficient_rows.hpp"
@@ -225,7 +226,10 @@ CoefficientResult judged(CoefficientResult result, CoefficientFit fit, const Fli
     result.method = fit.by_output_error ? "output error" : estimation::to_string(fit.chosen->method);
     const CoefficientChecks checks = internal::check_fit(fit, result.row_interval_s, each ? &*each : nullptr, flight);
     const bool scatters = each && each->scatter.found();
-    if (!scatters) estimation::widen(*fit.chosen, checks.scatter, options.significance);
+    if (!scatters) {
+      estimation::widen(*fit.chosen, checks.scatter, options.significance);
+      widen(*fit.chosen, model_error(fit.rows.data, fit.unmodelled_share), options.significance);
+    }
     if (fit.by_output_error) result.output_error_widening = internal::widening_of(fit, *flown);
     widen_by_budget(result, fit, flight);
     result.evidence = coefficient_evidence(result.name, checks, fit.comparison, options);

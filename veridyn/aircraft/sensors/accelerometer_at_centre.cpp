@@ -2,6 +2,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/recording/channel_map.hpp"

@@ -25,7 +25,7 @@ namespace veridyn::aircraft {
 
 /// Standard deviations that make up a parameter's: their squares add up.
 struct IntervalParts {
-  Eigen::VectorXd noise;     ///< of the sensors, of gusts, and scatter between parts or flights
+  Eigen::VectorXd noise;     ///< of the sensors, of gusts, what the model lacks, and scatter between parts or flights
   Eigen::VectorXd air_data;  ///< scales and zeros of airspeed, vanes, accelerometer and air density
   Eigen::VectorXd delays;    ///< of vanes, deflections, airspeed and accelerometer; lags of the surfaces
   Eigen::VectorXd body;      ///< mass, geometry and inertia; the accelerometer's place
