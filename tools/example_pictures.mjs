@@ -125,7 +125,7 @@ const pictures = {
       { kind: 'lines', yLabel: 'lateral [m/s²]', height: 110, series: [{ x, y: c('force[m/s^2]'), name: 'force on the driver, by telemetry; none from 35 s to 40 s' }] },
       {
         kind: 'lines', yLabel: 'roll [deg]', height: 130, series: [
-          { x, y: c('told[deg]'), name: 'ordered' },
+          { x, y: c('ordered[deg]'), name: 'ordered' },
           { x, y: c('reached[deg]'), name: 'reached by the platform', style: 'truth' },
         ],
       },
