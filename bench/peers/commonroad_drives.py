@@ -168,6 +168,6 @@ if __name__ == "__main__":
         for number in CARS:
             with tempfile.TemporaryDirectory() as place:
                 result, hidden = identified(sys.argv[1], number, seed, pathlib.Path(place))
-            counts.add(result, hidden)
+            counts.add_estimate(result, hidden)
             print(f"car {number}, seed {seed}: {row_of(result, hidden)}", flush=True)
     print(sys.argv[1], counts)

@@ -9,7 +9,6 @@ aerodynamic moments are about the centre of gravity, as ours. As a program, a ta
     python jsbsim_truth.py SEED SEED ...            # -v: and every interval that does not hold
 """
 
-import dataclasses
 import json
 import pathlib
 import sys
@@ -17,6 +16,7 @@ import tempfile
 
 import numpy
 
+from intervals import MEANT, IntervalCount
 from jsbsim_pilot import AIRCRAFT, AIRS, DEG, RECORDED, SURFACES, THRUST, body_of, fly, state_of, trimmed
 from program import run_study, write_csv
 
@@ -215,44 +215,6 @@ def identified(name, air, seed, folder):
     return json.loads((out / "estimate.json").read_text()), effective_truth(flight)
 
 
-@dataclasses.dataclass
-class Count:
-    """What became of intervals of 95 % that are meant as such."""
-
-    held: int = 0
-    intervals: int = 0
-    identified: int = 0
-    wrong: int = 0  # identified, more than 10 % off and outside
-    refused: int = 0  # effective, rejected or not excited
-    errors: list = dataclasses.field(default_factory=list)  # relative, of derivatives that are not about zero
-    widths: list = dataclasses.field(default_factory=list)  # half of them, relative
-
-    def add(self, parameter, true):
-        if parameter["status"] not in ("identified", "insignificant", "weak"):
-            self.refused += 1
-            return
-        off, half = abs(parameter["value"] - true), 0.5 * (parameter["high95"] - parameter["low95"])
-        outside = not parameter["low95"] <= true <= parameter["high95"]
-        self.intervals += 1
-        self.held += not outside
-        if parameter["status"] == "identified":
-            self.identified += 1
-            self.wrong += outside and off > 0.1 * abs(true)
-        if abs(true) > 1e-3:
-            self.errors.append(off / abs(true))
-            self.widths.append(half / abs(true))
-
-    def width_over_error(self):
-        return numpy.median(self.widths) / numpy.median(self.errors)
-
-    def __str__(self):
-        if not self.errors:
-            return f"{self.held} of {self.intervals} hold; refused {self.refused}"
-        text = f"{self.held} of {self.intervals} hold ({self.held / max(1, self.intervals):.0%}); "
-        text += f"wrong {self.wrong} of {self.identified} identified; median error {numpy.median(self.errors):.1%}, "
-        return text + f"half width {numpy.median(self.widths):.1%}; refused {self.refused}"
-
-
 def counted(flights, folder, say=lambda text: None):
     """Counts of (aircraft, air, seed), by "all", aircraft, air, coefficient, parameter and "graded yes"."""
     counts = {}
@@ -268,7 +230,7 @@ def counted(flights, folder, say=lambda text: None):
             true = truth[p["name"]]
             keys = ["all", name, air, p["name"].split("_")[0], p["name"]] + (["graded yes"] if yes else [])
             for key in keys:
-                counts.setdefault(key, Count()).add(p, true)
+                counts.setdefault(key, IntervalCount(MEANT)).add(p, true)
             if not p["low95"] <= true <= p["high95"]:
                 say(f"{name} {air} {seed}: {p['name']} {p['value']:.4g} in [{p['low95']:.4g}, {p['high95']:.4g}], "
                     f"true {true:.4g}, {p['status']}")

@@ -171,12 +171,12 @@ class EmgCount(IntervalCount):
 
     nrmse: list = dataclasses.field(default_factory=list)
 
-    def add(self, estimate, truth):
-        super().add(estimate, truth)
+    def add_estimate(self, estimate, truth):
+        super().add_estimate(estimate, truth)
         self.nrmse.append(estimate["fit"]["nrmse_trained"])
 
     def __str__(self):
-        return super().__str__() + f", NRMSE {numpy.mean(self.nrmse):.1%}"
+        return super().__str__() + f"; NRMSE {numpy.mean(self.nrmse):.1%}"
 
 
 if __name__ == "__main__":
@@ -184,7 +184,7 @@ if __name__ == "__main__":
     for number in map(int, sys.argv[2:]):
         with tempfile.TemporaryDirectory() as name:
             estimate, truth = identified(CASES[sys.argv[1]], number, pathlib.Path(name))
-        counts.add(estimate, truth)
+        counts.add_estimate(estimate, truth)
         row = next(r for r in estimate["evidence"] if r["check"] == "size of the EMG's error")
         line = ""
         for p in estimate["parameters"]:

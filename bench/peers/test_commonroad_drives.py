@@ -21,8 +21,8 @@ def test_intervals_hold_what_is_in_the_car(model, cars, half_width, tmp_path, co
     for number in cars:
         place = tmp_path / str(number)
         place.mkdir()
-        count.add(*identified(model, number, 1, place))
-    comparison.within(f"{model}: intervals that do not hold", len(count.errors) - count.held, 0)
+        count.add_estimate(*identified(model, number, 1, place))
+    comparison.within(f"{model}: intervals that do not hold", count.intervals - count.held, 0)
     assert count.wrong == 0
-    assert len(count.errors) == 3 * len(cars)
+    assert count.intervals == 3 * len(cars)
     comparison.within(f"{model}: half width of the intervals", numpy.median(count.widths), half_width)
