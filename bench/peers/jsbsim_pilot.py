@@ -5,6 +5,7 @@ are flown in two legs with a turn between them, in calm air or in JSBSim's turbu
 bank are held; during them hands are nearly off the controls of their axis."""
 
 import dataclasses
+import tempfile
 
 import jsbsim
 import numpy
@@ -143,6 +144,8 @@ def trimmed(name):
     aircraft = AIRCRAFT[name]
     fdm = jsbsim.FGFDMExec(None)
     fdm.set_debug_level(0)
+    # Some aircraft name a file of output, which is made as they are loaded.
+    fdm.set_output_path(tempfile.gettempdir())
     assert fdm.load_planet(str(FLAT_PLANET), False) and fdm.load_model(name)
     fdm.disable_output()
     fdm.set_dt(STEP_S)
