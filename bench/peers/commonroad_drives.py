@@ -14,8 +14,9 @@ import sys
 import tempfile
 
 import numpy
-from intervals import IntervalCount
+from intervals import IntervalCount, errors_in
 from program import run_study, write_csv
+from random_signals import smooth
 from vehiclemodels.init_mb import init_mb
 from vehiclemodels.init_std import init_std
 from vehiclemodels.parameters_vehicle1 import parameters_vehicle1
@@ -27,6 +28,7 @@ from vehiclemodels.vehicle_dynamics_std import vehicle_dynamics_std
 GRAVITY = 9.81
 CARS = {1: parameters_vehicle1, 2: parameters_vehicle2, 3: parameters_vehicle3}
 STEP_S, STEPS_PER_ROW = 1e-3, 10
+ROW_S = STEP_S * STEPS_PER_ROW
 SETTLING_S, DURATION_S = 2.0, 60.0
 NOISE = {"steer[rad]": 3e-4, "speed[m/s]": 0.03, "yaw_rate[rad/s]": 2e-3, "accel_y[m/s^2]": 0.06}
 
@@ -91,46 +93,39 @@ MODELS = {
 }
 
 
-def smooth(random, rows, correlation_s):
-    """A Gaussian process of unit variance, one value a row."""
-    step = STEP_S * STEPS_PER_ROW
-    half = int(math.ceil(3.0 * correlation_s / step))
-    kernel = numpy.exp(-((numpy.arange(-half, half + 1) * step / correlation_s) ** 2))
-    return numpy.convolve(random.standard_normal(rows + 2 * half), kernel, "valid") / numpy.linalg.norm(kernel)
-
-
 def stiffnesses(car):
     """Of one tyre in front and rear [N/rad] under its static load: CommonRoad's K_y is in proportion to the load."""
     share = 0.5 * car.m * GRAVITY / (car.a + car.b)
     return -car.tire.p_ky1 * share * car.b, -car.tire.p_ky1 * share * car.a
 
 
-def steering(random, car, speed, rows):
+def steering(random, car, speed, time):
     """Lane changes and bends of 1 to 4 s with quick corrections, at most what 0.5 g of a linear car takes [rad]."""
     C_f, C_r = stiffnesses(car)
     wheelbase = car.a + car.b
     understeer = 0.5 * car.m / wheelbase * (car.b / C_f - car.a / C_r)
     largest = 0.5 * GRAVITY * (wheelbase / speed**2 + understeer)
-    wanted = 0.35 * smooth(random, rows, 0.5) + 0.1 * smooth(random, rows, 0.12)
+    wanted = 0.35 * smooth(random, time, 0.5) + 0.1 * smooth(random, time, 0.12)
     return largest * numpy.tanh(wanted)
 
 
 def driven(model, random):
     """Columns of a drive without noise."""
-    rows = round((SETTLING_S + DURATION_S) / (STEP_S * STEPS_PER_ROW))
+    rows = round((SETTLING_S + DURATION_S) / ROW_S)
+    time = ROW_S * numpy.arange(rows + 1)
     speed = random.uniform(14.0, 22.0)
-    wished = speed * (1.0 + 0.06 * smooth(random, rows + 1, 6.0))
-    steer = steering(random, model.car, speed, rows + 1)
+    target = speed * (1.0 + 0.06 * smooth(random, time, 6.0))
+    steer = steering(random, model.car, speed, time)
     state = numpy.array(model.start(float(speed)))
     out = numpy.empty((rows, 4))
     for i in range(rows):
-        inputs = [(steer[i + 1] - steer[i]) / (STEP_S * STEPS_PER_ROW), wished[i] - state[3]]
+        inputs = [(steer[i + 1] - steer[i]) / ROW_S, target[i] - state[3]]
         state[2] = steer[i]
         out[i] = steer[i], *model.measured(state, model.rate(state, inputs))
         for _ in range(STEPS_PER_ROW):
             middle = state + 0.5 * STEP_S * numpy.array(model.rate(state, inputs))
             state = state + STEP_S * numpy.array(model.rate(middle, inputs))
-    return dict(zip(NOISE, out[round(SETTLING_S / (STEP_S * STEPS_PER_ROW)) :].T, strict=True))
+    return dict(zip(NOISE, out[round(SETTLING_S / ROW_S) :].T, strict=True))
 
 
 def record(name, number, seed, folder):
@@ -140,7 +135,7 @@ def record(name, number, seed, folder):
     drive = driven(model, random)
     rows = len(drive["steer[rad]"])
     noisy = {channel: drive[channel] + NOISE[channel] * error.standard_normal(rows) for channel in drive}
-    write_csv(folder / "drive.csv", {"time[s]": STEP_S * STEPS_PER_ROW * numpy.arange(rows)} | noisy)
+    write_csv(folder / "drive.csv", {"time[s]": ROW_S * numpy.arange(rows)} | noisy)
     C_f, C_r = stiffnesses(model.car)
     return {"C_f": C_f, "C_r": C_r, "I_z": model.car.I_z}, model.car
 
@@ -153,15 +148,6 @@ def identified(name, number, seed, folder):
     return json.loads((out / "estimate.json").read_text()), truth
 
 
-def row_of(estimate, truth):
-    text = ""
-    for p in estimate["parameters"]:
-        if (true := truth.get(p["name"])) is not None:
-            half = 0.5 * (p["high95"] - p["low95"])
-            text += f"{p['name']} {p['value'] / true - 1.0:+.1%} ±{half / true:.1%} {p['status']}; "
-    return text + str({k: v["grade"] for k, v in estimate["grades"].items()})
-
-
 if __name__ == "__main__":
     counts = IntervalCount()
     for seed in map(int, sys.argv[2:]):
@@ -169,5 +155,5 @@ if __name__ == "__main__":
             with tempfile.TemporaryDirectory() as place:
                 result, hidden = identified(sys.argv[1], number, seed, pathlib.Path(place))
             counts.add_estimate(result, hidden)
-            print(f"car {number}, seed {seed}: {row_of(result, hidden)}", flush=True)
+            print(f"car {number}, seed {seed}: {errors_in(result, hidden)}", flush=True)
     print(sys.argv[1], counts)

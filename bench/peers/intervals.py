@@ -60,3 +60,13 @@ class IntervalCount:
         if self.grades:
             text += f"; parameters {({grade: self.grades.count(grade) for grade in sorted(set(self.grades))})}"
         return text
+
+
+def errors_in(estimate, truth):
+    """The relative errors of an estimate with half widths and statuses, and its grades, on one line."""
+    parts = []
+    for p in estimate["parameters"]:
+        if (true := truth.get(p["name"], 0.0)) != 0.0:
+            half = 0.5 * (p["high95"] - p["low95"]) / true
+            parts.append(f"{p['name']} {p['value'] / true - 1.0:+.1%} ±{half:.1%} {p['status']}")
+    return "; ".join(parts) + f"; {({purpose: of['grade'] for purpose, of in estimate['grades'].items()})}"

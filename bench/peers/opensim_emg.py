@@ -16,9 +16,10 @@ import tempfile
 import numpy
 import opensim
 
-from intervals import IntervalCount
+from intervals import IntervalCount, errors_in
 from opensim_model import OpenSimModel, prescribe
 from program import run_study, shared_file, write_csv
+from random_signals import smooth
 
 MUSCLES = ["TRIlong", "TRIlat", "TRImed", "BIClong", "BICshort", "BRA"]
 GROUPS = {"triceps": MUSCLES[:3], "biceps": MUSCLES[3:5], "brachialis": MUSCLES[5:]}
@@ -60,15 +61,6 @@ CASES = {
     "millard": Case(model="arm26_millard"),
     "millard_exact": Case(model="arm26_millard", relative=0.0, late=False, stated=0.0),
 }
-
-
-def smooth(random, time, correlation_s):
-    """A Gaussian process of unit variance at even times, with correlation exp(-(lag/correlation)^2/2)."""
-    step = time[1] - time[0]
-    half = int(numpy.ceil(3.0 * correlation_s / step))
-    kernel = numpy.exp(-((numpy.arange(-half, half + 1) * step / correlation_s) ** 2))
-    white = random.standard_normal(len(time) + 2 * half)
-    return numpy.convolve(white, kernel, "valid") / numpy.linalg.norm(kernel)
 
 
 def spline(time, values):
@@ -186,11 +178,5 @@ if __name__ == "__main__":
             estimate, truth = identified(CASES[sys.argv[1]], number, pathlib.Path(name))
         counts.add_estimate(estimate, truth)
         row = next(r for r in estimate["evidence"] if r["check"] == "size of the EMG's error")
-        line = ""
-        for p in estimate["parameters"]:
-            true = truth[p["name"]]
-            if true != 0.0:
-                half = 0.5 * (p["high95"] - p["low95"])
-                line += f"{p['name']} {p['value'] / true - 1.0:+.1%} ±{half / true:.1%} "
-        print(f"{number}: {line}; error of the EMG {row['value'] or 0.0:.2f} {row['outcome']}", flush=True)
+        print(f"{number}: {errors_in(estimate, truth)}; error of the EMG {row['value'] or 0.0:.2f} {row['outcome']}", flush=True)
     print(sys.argv[1], counts)

@@ -2,6 +2,7 @@
 
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/recording/lever_arm.hpp"
 
 namespace veridyn::recording {
 namespace {
@@ -36,7 +37,7 @@ MotionSample at_place(const MotionSample& sample, const Eigen::Vector3d& place) 
   const Eigen::Vector3d d = place - sample.place;
   MotionSample s = sample;
   s.place = place;
-  s.force += sample.angular_acceleration.cross(d) + sample.rate.cross(sample.rate.cross(d));
+  s.force += lever_arm_acceleration(sample.angular_acceleration, sample.rate, d);
   s.position += (sample.attitude * d).head<2>();
   return s;
 }

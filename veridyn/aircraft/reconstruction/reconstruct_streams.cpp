@@ -9,6 +9,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/statistics.hpp"
+#include "veridyn/recording/lever_arm.hpp"
 
 namespace veridyn::aircraft::internal {
 namespace {
@@ -289,7 +290,7 @@ void move_to_centre_of_gravity(FlightStreams& s, const std::array<double, 3>& po
     const double t = s.accel.t[i];
     const Eigen::Vector3d w = s.gyro.at(t, here);
     const Eigen::Vector3d rate = (s.gyro.at(t + h, after) - s.gyro.at(t - h, before)) / (2.0 * h);
-    s.accel.v[i] -= rate.cross(r) + w.cross(w.cross(r));
+    s.accel.v[i] -= recording::lever_arm_acceleration(rate, w, r);
   }
 }
 

@@ -1,6 +1,5 @@
 #include "veridyn/aircraft/sensors/accelerometer_at_centre.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <span>
 #include <utility>
@@ -8,6 +7,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/recording/channel_map.hpp"
+#include "veridyn/recording/lever_arm.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -43,7 +43,7 @@ Recording with_accelerometer_at_centre(Recording recording, const std::array<dou
     for (std::size_t k = 0; k < force[axis].size(); ++k) {
       const Eigen::Vector3d w(rate[0][k], rate[1][k], rate[2][k]);
       const Eigen::Vector3d dw(derivative[0][k], derivative[1][k], derivative[2][k]);
-      force[axis].value[k] -= (dw.cross(r) + w.cross(w.cross(r)))(static_cast<Eigen::Index>(axis));
+      force[axis].value[k] -= recording::lever_arm_acceleration(dw, w, r)(static_cast<Eigen::Index>(axis));
     }
   }
   for (Channel& channel : force) recording.set(std::move(channel));

@@ -1,6 +1,5 @@
 #include "veridyn/aircraft/identification/budget/sensor_error.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include "veridyn/core/index.hpp"
 #include "veridyn/numerics/linear_algebra/products.hpp"
 #include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
+#include "veridyn/recording/lever_arm.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -58,7 +58,7 @@ void place_accelerometer(FlightSignals& signals, const Eigen::Vector3d& r) {
   for (std::size_t k = 0; k < signals.grid.count; ++k) {
     const Eigen::Vector3d w(signals[F::kP].value[k], signals[F::kQ].value[k], signals[F::kR].value[k]);
     const Eigen::Vector3d dw(signals[F::kPdot].value[k], signals[F::kQdot].value[k], signals[F::kRdot].value[k]);
-    const Eigen::Vector3d lever = dw.cross(r) + w.cross(w.cross(r));
+    const Eigen::Vector3d lever = recording::lever_arm_acceleration(dw, w, r);
     signals[F::kAx].value[k] += lever.x();
     signals[F::kAy].value[k] += lever.y();
     signals[F::kAz].value[k] += lever.z();

@@ -294,9 +294,7 @@ CheckedFlight recording_evidence(const Recording& recording, const Reconstructio
   std::vector<Evidence> samples = sample_rows(recording, segments, threads);
   recording::InertialConsistency inertial;
   CheckedFlight air_data;
-  const bool at_centre = std::ranges::all_of(imu_position, [](double x) { return x == 0.0; });
-  const Recording moved = at_centre ? Recording() : with_accelerometer_at_centre(recording, imu_position);
-  const Recording& motion = at_centre ? recording : moved;
+  const Recording motion = with_accelerometer_at_centre(recording, imu_position);
   const std::array<std::function<void()>, 2> checks{
       [&] { inertial = recording::inertial_consistency(motion, segments.airborne); },
       [&] {
