@@ -193,20 +193,26 @@ bool DriveParametricModel::drive(const Segment& segment, const RollingBicycle<Sc
   using Rates = RollingBicycleRates<Scalar, kStates>;
   const auto unknown = [&](DriveUnknown u) -> const Scalar& { return theta(static_cast<Eigen::Index>(u)); };
   const auto n = static_cast<std::size_t>(segment.samples);
-  const std::span<const double> steer_all(steer_), speed_all(speed_);
   const double step = grid_.step;
-  // The steering before and after the segment, as far as it is there, for its delay.
+  // Inputs before and after the segment, as far as they are there, for their delays.
   const auto reach = static_cast<std::size_t>(kLongestDelay_s / step);
-  std::size_t lead = 0, tail = 0;
-  while (lead < reach && segment.begin > lead && std::isfinite(steer_all[segment.begin - lead - 1])) ++lead;
-  while (tail < reach && segment.begin + n + tail < steer_all.size() &&
-         std::isfinite(steer_all[segment.begin + n + tail]))
-    ++tail;
-  const SampledInput steer{std::span(steer_all).subspan(segment.begin - lead, lead + n + tail), step};
-  const SampledInput speed{std::span(speed_all).subspan(segment.begin, n), step};
+  struct Reaching {
+    SampledInput input;
+    double lead = 0.0;  // samples before the segment
+  };
+  const auto around = [&](std::span<const double> all) -> Reaching {
+    std::size_t lead = 0, tail = 0;
+    while (lead < reach && segment.begin > lead && std::isfinite(all[segment.begin - lead - 1])) ++lead;
+    while (tail < reach && segment.begin + n + tail < all.size() && std::isfinite(all[segment.begin + n + tail]))
+      ++tail;
+    return {{all.subspan(segment.begin - lead, lead + n + tail), step}, static_cast<double>(lead)};
+  };
+  const Reaching steer = around(steer_), speed = around(speed_);
 
   const Scalar steer_gain = 1.0 / (1.0 + unknown(DriveUnknown::kSteerScale));
-  const Scalar steer_lead = static_cast<double>(lead) - unknown(DriveUnknown::kSteerDelay) / step;
+  // The wheels follow the recorded steering; a recorded speed follows the true one.
+  const Scalar steer_lead = steer.lead - unknown(DriveUnknown::kSteerDelay) / step;
+  const Scalar speed_lead = speed.lead + unknown(DriveUnknown::kSpeedDelay) / step;
   struct Input {
     Scalar delta;
     Scalar u;
@@ -220,9 +226,8 @@ bool DriveParametricModel::drive(const Segment& segment, const RollingBicycle<Sc
   const SampledInput speed_rate{
       by_pedals ? std::span<const double>(speed_rate_).subspan(segment.begin, n) : std::span<const double>(), step};
   const auto input = [&](double position) -> Input {
-    const Scalar at = steer_lead + position;
-    return {(steer.at(at) - unknown(DriveUnknown::kSteerBias)) * steer_gain,
-            Scalar(speed.at(position)),
+    return {(steer.input.at(Scalar(steer_lead + position)) - unknown(DriveUnknown::kSteerBias)) * steer_gain,
+            speed.input.at(Scalar(speed_lead + position)),
             {by_pedals ? speed_rate.at(position) : 0.0, banked, bank}};
   };
   const bool delayed = delays_outputs(sampled_value(unknown(DriveUnknown::kYawRateDelay)),

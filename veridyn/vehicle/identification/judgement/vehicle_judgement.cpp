@@ -198,9 +198,10 @@ std::vector<Evidence> rows_of(const VehicleProblem& problem, const VehicleFindin
     if (const Parameter* p = findings.chosen.find(kDriveUnknownNames[DriveUnknown::kRollGradient]))
       known.roll_gradient = p->value;
     // A model of wrong channels says nothing of their clocks.
-    if (!contradicts_itself(*problem.recording) && !is_in_doubt(*problem.recording, known))
-      known.delay = findings.delay;
+    const bool agrees = !contradicts_itself(*problem.recording) && !is_in_doubt(*problem.recording, known);
+    if (agrees) known.delay = findings.delay;
     add(recording_rows(*problem.recording, known));
+    if (agrees) add(conflict_rows(findings.conflicts));
   }
   add(check_residuals(problem, findings));
   rows.push_back(row_of(Check::kSimulation, "", passed_or(here != nullptr, Outcome::kFailed)));

@@ -136,6 +136,7 @@ std::pair<double, double> bounds_of(DriveUnknown unknown, double start, double w
     case DriveUnknown::kAccelYScale:
       return {-0.9, kInfinity};
     case DriveUnknown::kSteerDelay:
+    case DriveUnknown::kSpeedDelay:
     case DriveUnknown::kYawRateDelay:
     case DriveUnknown::kAccelYDelay:
     case DriveUnknown::kCourseDelay:

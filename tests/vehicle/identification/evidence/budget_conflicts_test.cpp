@@ -1,0 +1,91 @@
+#include "veridyn/vehicle/identification/evidence/budget_conflicts.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "veridyn/core/constants.hpp"
+#include "veridyn/estimation/judgement/check.hpp"
+
+namespace veridyn::vehicle {
+namespace {
+
+using estimation::Cause;
+using estimation::Outcome;
+using ::testing::HasSubstr;
+
+constexpr auto kDelay = DriveUnknown::kAccelYDelay;
+
+/// What a fit finds of a delay with a normal prior where the drive alone would say `drive` +- `sigma`.
+estimation::OutputErrorEstimate posterior(const DriveModelOptions& model, double drive, double sigma) {
+  const double prior = std::pow(model.prior[kDelay], 2), noise = sigma * sigma;
+  const auto i = static_cast<Eigen::Index>(kDelay);
+  estimation::OutputErrorEstimate fit;
+  fit.theta = Eigen::VectorXd::Zero(kDriveUnknowns);
+  fit.covariance = Eigen::MatrixXd::Zero(kDriveUnknowns, kDriveUnknowns);
+  fit.theta(i) = drive * prior / (prior + noise);
+  fit.covariance(i, i) = prior * noise / (prior + noise);
+  return fit;
+}
+
+// By chance prior and drive differ by sqrt(prior^2 + sigma^2); what a fit with the prior leaves says the same.
+TEST(BudgetConflicts, AreWhatIsBeyondThreeStandardDeviationsOfTheDifference) {
+  const DriveModelOptions model;
+  for (const double sigma : {0.001, 0.01, 0.05}) {
+    const double by_chance = std::hypot(model.prior[kDelay], sigma);
+    for (const double sign : {-1.0, 1.0}) {
+      EXPECT_TRUE(budget_conflicts(model, posterior(model, sign * 2.99 * by_chance, sigma)).empty()) << sigma;
+      const std::vector<BudgetConflict> found =
+          budget_conflicts(model, posterior(model, sign * 3.01 * by_chance, sigma));
+      ASSERT_EQ(found.size(), 1U) << sigma;
+      EXPECT_EQ(found.front().unknown, kDelay);
+      EXPECT_EQ(found.front().prior, model.prior[kDelay]);
+    }
+  }
+}
+
+TEST(BudgetConflicts, AreNotOfWhatIsKnownOrNotDetermined) {
+  DriveModelOptions model;
+  const estimation::OutputErrorEstimate fit = posterior(model, 0.1, 0.001);
+  ASSERT_EQ(budget_conflicts(model, fit).size(), 1U);
+  model.free[kDelay] = false;
+  EXPECT_TRUE(budget_conflicts(model, fit).empty());
+  model.free[kDelay] = true;
+  model.prior[kDelay] = kInfinity;
+  EXPECT_TRUE(budget_conflicts(model, fit).empty());
+}
+
+TEST(BudgetConflicts, WidenTheirPriorsAndNoOther) {
+  const DriveModelOptions model;
+  const std::vector<BudgetConflict> found = budget_conflicts(model, posterior(model, -0.1, 0.001));
+  const DriveModelOptions wide = with_widened_priors(model, found);
+  EXPECT_NEAR(wide.prior[kDelay], 0.1, 0.002);
+  for (const DriveUnknown u : kAllDriveUnknowns)
+    if (u != kDelay && std::isfinite(model.prior[u])) EXPECT_EQ(wide.prior[u], model.prior[u]) << kDriveUnknownNames[u];
+}
+
+TEST(BudgetConflicts, AreRowsThatNameTheChannel) {
+  const auto row = [](DriveUnknown u, double value, double sigma) {
+    return conflict_rows(std::vector<BudgetConflict>{{.unknown = u, .value = value, .sigma = sigma, .prior = 0.01}})
+        .front();
+  };
+  EXPECT_EQ(row(kDelay, 0.04, 0.001).outcome, Outcome::kPassed);
+  EXPECT_EQ(row(kDelay, -0.06, 0.001).outcome, Outcome::kCare);
+  EXPECT_EQ(row(kDelay, 0.06, 0.01).outcome, Outcome::kPassed) << "its own error counts";
+  EXPECT_EQ(row(kDelay, 0.2, 0.001).outcome, Outcome::kFailed);
+  const estimation::Evidence late = row(kDelay, 0.096, 0.002);
+  EXPECT_EQ(late.about, "accel_y");
+  EXPECT_EQ(late.cause, Cause::kDelay);
+  EXPECT_EQ(estimation::says(late),
+            "accel_y_delay (how late accel_y is recorded against yaw_rate) is 0.096 +- 0.002 s, where 0.01 s were "
+            "expected: estimated with a prior as wide, and corrected");
+  EXPECT_THAT(estimation::advice_of(late), HasSubstr("accel_y = { ..., delay = \"96 ms\" }"));
+  EXPECT_EQ(row(DriveUnknown::kAccelPlace, 0.09, 0.001).cause, Cause::kPlace);
+  EXPECT_EQ(row(DriveUnknown::kTrail, 0.09, 0.001).cause, Cause::kMissingTerm);
+  EXPECT_TRUE(conflict_rows(std::vector<BudgetConflict>{{.unknown = DriveUnknown::kSteerDelay}}).empty());
+}
+
+}  // namespace
+}  // namespace veridyn::vehicle
