@@ -83,6 +83,7 @@ TEST(BudgetConflicts, AreRowsThatNameTheChannel) {
             "expected: estimated with a prior as wide, and corrected");
   EXPECT_THAT(estimation::advice_of(late), HasSubstr("accel_y = { ..., delay = \"96 ms\" }"));
   EXPECT_EQ(row(DriveUnknown::kAccelPlace, 0.09, 0.001).cause, Cause::kPlace);
+  EXPECT_EQ(row(DriveUnknown::kSteerScale, 0.09, 0.001).cause, Cause::kScale);
   EXPECT_EQ(row(DriveUnknown::kTrail, 0.09, 0.001).cause, Cause::kMissingTerm);
   EXPECT_TRUE(conflict_rows(std::vector<BudgetConflict>{{.unknown = DriveUnknown::kSteerDelay}}).empty());
 }

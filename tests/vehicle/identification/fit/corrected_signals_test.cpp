@@ -28,7 +28,9 @@ TEST(CorrectedSignals, AreInTheTimeOfTheWheelsAndAtTheAccelerometersPlace) {
   recorded[DriveSignal::kYawRate].value = wave(0.0);
   recorded[DriveSignal::kAccelY].value = wave(0.013);
   recorded[DriveSignal::kSpeed].value = wave(0.12);
+  for (double& steer : recorded[DriveSignal::kSteer].value) steer *= 1.1;
   Eigen::VectorXd theta = Eigen::VectorXd::Zero(kDriveUnknowns);
+  theta(static_cast<Eigen::Index>(DriveUnknown::kSteerScale)) = 0.1;
   theta(static_cast<Eigen::Index>(DriveUnknown::kSteerDelay)) = -0.025;
   theta(static_cast<Eigen::Index>(DriveUnknown::kAccelYDelay)) = 0.013;
   theta(static_cast<Eigen::Index>(DriveUnknown::kSpeedDelay)) = 0.12;

@@ -21,6 +21,8 @@ struct Subject {
 };
 Subject subject_of(DriveUnknown unknown) {
   switch (unknown) {
+    case DriveUnknown::kSteerScale:
+      return {"steer", Cause::kScale};
     case DriveUnknown::kSpeedDelay:
       return {"speed", Cause::kDelay};
     case DriveUnknown::kAccelYDelay:
