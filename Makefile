@@ -7,7 +7,7 @@ JOBS   ?= $(shell nproc)
 SHELL  := /bin/bash
 space  := $(subst ,, )
 
-.PHONY: help setup build demo test long campaigns docs pictures format format-check tidy asan asan-readers tsan bench peers bench-peers fuzz soak nightly gcc install clean
+.PHONY: help setup build demo test long campaigns docs pictures format format-check tidy asan asan-readers asan-runs tsan bench peers bench-peers fuzz soak nightly gcc install clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1|/' | column -t -s '|'
@@ -86,10 +86,14 @@ asan: setup ## tests of every module under the address and undefined-behaviour s
 	cmake --build build/asan -j $(JOBS) --target $(ASAN_MODULES:%=veridyn_%_tests)
 	$(call run_tests,build/asan) -LE '$(LATER)' -L '^($(subst $(space),|,$(ASAN_MODULES)))$$'
 
-asan-readers: setup ## the same for what reads files and packets of others, and one full run of each domain
+asan-readers: setup ## the same for the tests of what reads files and packets of others
 	cmake --preset asan --log-level=WARNING
-	cmake --build build/asan -j $(JOBS) --target $(READERS:%=veridyn_%_tests) veridyn
+	cmake --build build/asan -j $(JOBS) --target $(READERS:%=veridyn_%_tests)
 	$(call run_tests,build/asan) -LE '$(LATER)' -L '^($(subst $(space),|,$(READERS)))$$'
+
+asan-runs: setup ## a full run of each domain under these sanitizers
+	cmake --preset asan --log-level=WARNING
+	cmake --build build/asan -j $(JOBS) --target veridyn
 	$(call run_tests,build/asan) -R '^($(ASAN_RUNS))$$'
 
 # What runs in threads beside each other, by module. The sanitizer's shadow memory wants addresses that are not shuffled.
@@ -141,6 +145,7 @@ nightly: setup ## all that is too long for .ci/run: every test, module and check
 	$(MAKE) campaigns
 	$(MAKE) tidy
 	$(MAKE) asan
+	$(MAKE) asan-runs
 	$(MAKE) tsan
 	$(MAKE) fuzz SECONDS_EACH=60
 	$(MAKE) gcc
