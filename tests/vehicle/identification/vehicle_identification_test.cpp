@@ -140,7 +140,7 @@ TEST(VehicleIdentification, DoesNotTakeAWrongSteeringForSofterTyres) {
   const VehicleParameters<double> p = family_car();
   const WanderingSteer steer(5, 0.02);
   const VehicleTrajectory drive = drive_bicycle<BicycleModel<double, LinearTyre<double>>>(
-      [&](double) { return linear_bicycle(p); }, 60.0, steer, [](double) { return 20.0; });
+      [&](double) { return testing::linear_bicycle(p); }, 60.0, steer, [](double) { return 20.0; });
   for (const double scale : {0.06, 1.0}) {
     DriveSensorSet sensors = reference_drive_sensors();
     sensors[DriveSensorKind::kSteer].scale = scale;
