@@ -45,8 +45,6 @@ Smoothed smoothed(const std::vector<double>& recorded, double rate_Hz, double pa
 }
 
 constexpr double kLongestLag_s = 8.0;
-/// Middle of the low-pass's transition over its pass band.
-constexpr double kMiddle = 0.5 * (1.0 + kTransition);
 
 /// Stretches without a hole, of `least` samples or more.
 std::vector<std::pair<std::size_t, std::size_t>> whole_stretches(const std::vector<double>& x, std::size_t least) {
@@ -86,19 +84,22 @@ struct SymmetricTaps {
   double mean_gain = 0.0;  ///< over all frequencies
 };
 
-/// Of the Wiener filter for white noise, which passes nothing above `stop` (as a share of half the rate).
-SymmetricTaps wiener_taps(const std::vector<double>& autocovariance, double noise, double stop) {
+/// Of the Wiener filter for white noise, with a low-pass whose gain falls from `pass` to 1.5 times that (shares of half
+/// the rate).
+SymmetricTaps wiener_taps(const std::vector<double>& autocovariance, double noise, double pass) {
   const std::size_t longest = autocovariance.size() - 1, frequencies = 4 * longest;
   SymmetricTaps out{.tap = std::vector<double>(longest + 1, 0.0)};
   for (std::size_t i = 0; i < frequencies; ++i) {
     const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(frequencies);
-    if (share > stop) break;
+    if (share > kTransition * pass) break;
+    const double beyond = std::max(0.0, (share / pass - 1.0) / (kTransition - 1.0));
+    const double in_band = 0.5 * (1.0 + std::cos(std::numbers::pi * beyond));
     const double angle = std::numbers::pi * share;
     double power = autocovariance[0];
     for (std::size_t lag = 1; lag <= longest; ++lag)
       power += 2.0 * parzen(static_cast<double>(lag) / static_cast<double>(longest)) * autocovariance[lag] *
                std::cos(angle * static_cast<double>(lag));
-    const double gain = std::max(0.0, 1.0 - noise / power) / static_cast<double>(frequencies);
+    const double gain = in_band * std::max(0.0, 1.0 - noise / power) / static_cast<double>(frequencies);
     out.mean_gain += gain;
     for (std::size_t lag = 0; lag <= longest; ++lag) out.tap[lag] += gain * std::cos(angle * static_cast<double>(lag));
   }
@@ -135,10 +136,9 @@ BandLimited denoised(const std::vector<double>& recorded, double rate_Hz, double
   for (const auto& [begin, end] : stretches)
     for (std::size_t k = begin; k < end; ++k) mean += recorded[k], samples += 1.0;
   mean /= samples;
-  const SymmetricTaps filter = wiener_taps(autocovariances(recorded, mean, stretches, longest), out.noise,
-                                           2.0 * kMiddle * out.band_Hz / rate_Hz);
-  const std::vector<double> limited = out.value;
-  for (const auto& stretch : stretches) filter_stretch(limited, mean, stretch, filter.tap, out.value);
+  const SymmetricTaps filter =
+      wiener_taps(autocovariances(recorded, mean, stretches, longest), out.noise, 2.0 * out.band_Hz / rate_Hz);
+  for (const auto& stretch : stretches) filter_stretch(recorded, mean, stretch, filter.tap, out.value);
   out.noise_share = filter.mean_gain;
   return out;
 }

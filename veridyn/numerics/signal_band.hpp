@@ -19,7 +19,7 @@ struct BandLimited {
 /// enough.
 [[nodiscard]] BandLimited band_limited(const std::vector<double>& recorded, double rate_Hz, double least_noise);
 
-/// The same, and of what that leaves the Wiener filter: each frequency by the share of its power that is no noise,
+/// The same band by its Wiener filter: each frequency by the share of its power that is no noise,
 /// 1 - noise/power, the recorded spectrum by autocovariances over 8 s under Parzen's window. It is without phase; the
 /// mean stays. What is left of the error does not go with the result (for a Gaussian signal that is the conditional
 /// mean), so that a response which is fitted to it is not too small, as one is that is fitted to a noisy input

@@ -75,12 +75,12 @@ TEST(BudgetConflicts, AreRowsThatNameTheChannel) {
   EXPECT_EQ(row(kDelay, -0.06, 0.001).outcome, Outcome::kCare);
   EXPECT_EQ(row(kDelay, 0.2, 0.001).outcome, Outcome::kFailed);
   const estimation::Evidence late = row(kDelay, 0.096, 0.002);
-  EXPECT_EQ(late.about, "accel_y");
+  EXPECT_EQ(late.about, "accel_y, yaw_rate");
   EXPECT_EQ(late.cause, Cause::kDelay);
   EXPECT_EQ(estimation::says(late),
             "accel_y_delay (how late accel_y is recorded against yaw_rate) is 0.096 +- 0.002 s, where 0.01 s were "
             "expected: estimated with a prior as wide, and corrected");
-  EXPECT_THAT(estimation::advice_of(late), HasSubstr("accel_y = { ..., delay = \"96 ms\" }"));
+  EXPECT_THAT(estimation::advice_of(late), HasSubstr("data.map takes its delay, \"96 ms\""));
   EXPECT_EQ(row(DriveUnknown::kAccelPlace, 0.09, 0.001).cause, Cause::kPlace);
   EXPECT_EQ(row(DriveUnknown::kSteerScale, 0.09, 0.001).cause, Cause::kScale);
   EXPECT_EQ(row(DriveUnknown::kTrail, 0.09, 0.001).cause, Cause::kMissingTerm);

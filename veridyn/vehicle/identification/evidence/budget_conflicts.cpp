@@ -14,7 +14,8 @@ using estimation::Cause;
 using estimation::Check;
 using estimation::Evidence;
 
-/// The channel that an error is of, and what is wrong with it; of tyres the unknown itself.
+/// The channels that an error is of, and what is wrong with them; of tyres the unknown itself. Of two that do not go
+/// together in time either may be late.
 struct Subject {
   std::string_view name;
   Cause cause;
@@ -24,9 +25,9 @@ Subject subject_of(DriveUnknown unknown) {
     case DriveUnknown::kSteerScale:
       return {"steer", Cause::kScale};
     case DriveUnknown::kSpeedDelay:
-      return {"speed", Cause::kDelay};
+      return {"speed, yaw_rate", Cause::kDelay};
     case DriveUnknown::kAccelYDelay:
-      return {"accel_y", Cause::kDelay};
+      return {"accel_y, yaw_rate", Cause::kDelay};
     case DriveUnknown::kAccelPlace:
     case DriveUnknown::kAccelHeight:
       return {"accel_y", Cause::kPlace};
