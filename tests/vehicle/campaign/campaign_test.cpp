@@ -162,7 +162,7 @@ TEST(DriveCampaign, NamesWhatIsWrong) {
   EXPECT_TRUE(clean.confidence.wrong.empty());
   EXPECT_EQ(clean.confidence.confident, 4u);
   for (const char* name : {"yaw rate in deg/s", "accel_y in g", "speed in km/h", "hand wheel taken for road wheels",
-                           "steering reversed", "yaw rate frozen for 10 %", "accel_y 0.1 s late"}) {
+                           "steering reversed", "yaw rate frozen for 10 %"}) {
     const Trial trial = testing::try_fault(study, clean, testing::drive_fault(name));
     EXPECT_EQ(trial.finding, Finding::kNamed) << name << ": " << to_string(trial.finding) << ", " << trial.reason;
   }

@@ -108,49 +108,6 @@ TEST(VehicleIdentification, FindsTheDelayOfTheSteering) {
   EXPECT_LT(relative(id, VehicleMethod::kOutputError, "C_f", p.C_f), 0.02);
 }
 
-void expect_held(const VehicleIdentification& id, const char* name, double truth) {
-  const Parameter* p = id.find(VehicleMethod::kOutputError)->find(name);
-  ASSERT_NE(p, nullptr) << name;
-  EXPECT_LE(p->low95, truth) << name;
-  EXPECT_GE(p->high95, truth) << name;
-}
-
-// Ten standard deviations of its prior, which would hold it back.
-TEST(VehicleIdentification, WidensAPriorThatTheDriveContradicts) {
-  const VehicleParameters<double> p = family_car();
-  DriveSensorSet sensors = reference_drive_sensors();
-  sensors[DriveSensorKind::kAccelY].delay_s = 0.1;
-  const VehicleIdentification id = identify(lively_drive(p, 3), sensors, 1);
-  expect_held(id, "accel_y_delay", 0.1);
-  expect_held(id, "C_f", p.C_f);
-  expect_held(id, "C_r", p.C_r);
-  expect_held(id, "I_z", p.I_z);
-  const auto row = std::ranges::find(id.checks, "accel_y, yaw_rate", &estimation::Evidence::about);
-  ASSERT_NE(row, id.checks.end());
-  EXPECT_EQ(row->check, estimation::Check::kBeyondPrior);
-  EXPECT_EQ(row->outcome, estimation::Outcome::kCare);
-  // Without a fault no prior is in the way.
-  const VehicleIdentification clean = identify(lively_drive(p, 3), reference_drive_sensors(), 1);
-  EXPECT_EQ(std::ranges::find(clean.checks, estimation::Check::kBeyondPrior, &estimation::Evidence::check),
-            clean.checks.end());
-}
-
-// At one speed a steering that reads too much looks much like softer tyres.
-TEST(VehicleIdentification, DoesNotTakeAWrongSteeringForSofterTyres) {
-  const VehicleParameters<double> p = family_car();
-  const WanderingSteer steer(5, 0.02);
-  const VehicleTrajectory drive = drive_bicycle<BicycleModel<double, LinearTyre<double>>>(
-      [&](double) { return testing::linear_bicycle(p); }, 60.0, steer, [](double) { return 20.0; });
-  for (const double scale : {0.06, 1.0}) {
-    DriveSensorSet sensors = reference_drive_sensors();
-    sensors[DriveSensorKind::kSteer].scale = scale;
-    const VehicleIdentification id = identify(drive, sensors, 1);
-    for (const auto& [name, truth] : {std::pair{"C_f", p.C_f}, std::pair{"C_r", p.C_r}, std::pair{"I_z", p.I_z}})
-      if (id.judgement.parameters.grade == estimation::Grade::kYes) expect_held(id, name, truth);
-    if (scale == 1.0) EXPECT_NE(id.judgement.parameters.grade, estimation::Grade::kYes);
-  }
-}
-
 TEST(VehicleIdentification, SaysThatStraightDrivingExcitesNothing) {
   const VehicleParameters<double> p = family_car();
   const VehicleIdentification id = identify(lively_drive(p, 1, 1e-4), reference_drive_sensors(), 1);

@@ -27,21 +27,16 @@ TEST(CorrectedSignals, AreInTheTimeOfTheWheelsAndAtTheAccelerometersPlace) {
   recorded[DriveSignal::kSteer].value = wave(0.025);  // late, so that the wheels answer it early
   recorded[DriveSignal::kYawRate].value = wave(0.0);
   recorded[DriveSignal::kAccelY].value = wave(0.013);
-  recorded[DriveSignal::kSpeed].value = wave(0.12);
-  for (double& steer : recorded[DriveSignal::kSteer].value) steer *= 1.1;
   Eigen::VectorXd theta = Eigen::VectorXd::Zero(kDriveUnknowns);
-  theta(static_cast<Eigen::Index>(DriveUnknown::kSteerScale)) = 0.1;
   theta(static_cast<Eigen::Index>(DriveUnknown::kSteerDelay)) = -0.025;
   theta(static_cast<Eigen::Index>(DriveUnknown::kAccelYDelay)) = 0.013;
-  theta(static_cast<Eigen::Index>(DriveUnknown::kSpeedDelay)) = 0.12;
   theta(static_cast<Eigen::Index>(DriveUnknown::kAccelPlace)) = 0.4;
   theta(static_cast<Eigen::Index>(DriveUnknown::kAccelHeight)) = -0.3;
   const DriveSignals corrected = corrected_signals(recorded, theta);
   const std::vector<double> in_time = wave(0.0);
-  for (std::size_t k = 15; k < 485; ++k) {
+  for (std::size_t k = 10; k < 490; ++k) {
     EXPECT_NEAR(corrected[DriveSignal::kSteer].value[k], in_time[k], 1e-5);
     EXPECT_NEAR(corrected[DriveSignal::kAccelY].value[k], in_time[k], 1e-5);
-    EXPECT_NEAR(corrected[DriveSignal::kSpeed].value[k], in_time[k], 1e-5);
     EXPECT_EQ(corrected[DriveSignal::kYawRate].value[k], in_time[k]);
   }
   EXPECT_DOUBLE_EQ(corrected.accel_position[0], 0.6);

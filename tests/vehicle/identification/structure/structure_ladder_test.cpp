@@ -53,12 +53,6 @@ double value_of(const StructureLadder& ladder, DriveUnknown unknown) {
   return ladder.fit.raw.theta(static_cast<Eigen::Index>(unknown));
 }
 
-/// Standard error of an unknown.
-double sigma_of(const StructureLadder& ladder, DriveUnknown unknown) {
-  const auto i = static_cast<Eigen::Index>(unknown);
-  return std::sqrt(ladder.fit.raw.total_covariance()(i, i));
-}
-
 TEST(StructureLadder, APlainBicycleStaysOne) {
   const StructureLadder ladder = climbed(bicycle_drive(), reference_drive_sensors(), family_car());
   // To roll; where that is not taken there is nothing to try beyond it.
@@ -75,20 +69,16 @@ TEST(StructureLadder, APlainBicycleStaysOne) {
   EXPECT_NEAR(ladder.delay->value_s, 0.0, 2.0 * ladder.delay->sigma_s);
   EXPECT_LT(ladder.delay->sigma_s, 0.003);
   ASSERT_TRUE(ladder.fit.raw.usable()) << ladder.fit.raw.message;
-  EXPECT_NEAR(value_of(ladder, DriveUnknown::kCf), family_car().C_f, 2.0 * sigma_of(ladder, DriveUnknown::kCf));
-  EXPECT_LT(sigma_of(ladder, DriveUnknown::kCf), 0.05 * family_car().C_f);
+  EXPECT_NEAR(value_of(ladder, DriveUnknown::kCf) / family_car().C_f, 1.0, 0.03);
   // A richer structure contains the simpler one: none is less likely beyond its priors.
   for (std::size_t i = 1; i < ladder.tried.size(); ++i)
     EXPECT_LT(ladder.tried[i].negative_log_likelihood, ladder.tried[0].negative_log_likelihood + 2.0 * kLikelier);
 }
 
-// By the truth's own numbers: the sensors are exact and steering and speed known to be so, so that what is missed is
-// the model's.
+// By the truth's own numbers: the sensors are exact, so that what is missed is the model's.
 TEST(StructureLadder, ACarThatRollsTakesRollAndItsStiffnessesComeOut) {
   const VehicleParameters<double> car = testing::car_with_bars();
-  VehicleIdentifyOptions known;
-  for (const DriveUnknown u : {DriveUnknown::kSteerScale, DriveUnknown::kSpeedDelay}) known.model.free[u] = false;
-  const StructureLadder ladder = climbed(four_wheel_drive(), testing::perfect_sensors(), car, known);
+  const StructureLadder ladder = climbed(four_wheel_drive(), testing::perfect_sensors(), car);
   ASSERT_TRUE(ladder.fit.raw.usable()) << ladder.fit.raw.message;
   const TriedStructure& taken = ladder.tried[ladder.chosen];
   EXPECT_TRUE(has_roll(taken.structure)) << to_string(taken.structure);
@@ -125,7 +115,7 @@ TEST(StructureLadder, AWrongScaleOfTheAccelerometerIsNoRoll) {
                                        "bicycle does"));
   ASSERT_TRUE(ladder.fit.raw.usable());
   EXPECT_NEAR(value_of(ladder, DriveUnknown::kAccelYScale), 0.09, 0.01);
-  EXPECT_NEAR(value_of(ladder, DriveUnknown::kCf), family_car().C_f, 2.0 * sigma_of(ladder, DriveUnknown::kCf));
+  EXPECT_NEAR(value_of(ladder, DriveUnknown::kCf) / family_car().C_f, 1.0, 0.05);
 }
 
 // Whatever the drive asks for: this one takes roll where nothing is fixed.

@@ -74,7 +74,7 @@ DriveParametricModel::DriveParametricModel(const DriveSignals& signals, std::spa
   const GridSignal& steer = signals[DriveSignal::kSteer];
   if (options.smoothing_Hz < 0.0) {
     numerics::BandLimited limited =
-        numerics::denoised(steer.value, grid_.rate_Hz(), kNoNoise * numerics::rms(steer.value));
+        numerics::band_limited(steer.value, grid_.rate_Hz(), kNoNoise * numerics::rms(steer.value));
     steer_ = std::move(limited.value);
     steer_error_share_ = limited.band_Hz > 0.0 ? limited.noise_share : 0.0;
   } else {
@@ -193,26 +193,20 @@ bool DriveParametricModel::drive(const Segment& segment, const RollingBicycle<Sc
   using Rates = RollingBicycleRates<Scalar, kStates>;
   const auto unknown = [&](DriveUnknown u) -> const Scalar& { return theta(static_cast<Eigen::Index>(u)); };
   const auto n = static_cast<std::size_t>(segment.samples);
+  const std::span<const double> steer_all(steer_), speed_all(speed_);
   const double step = grid_.step;
-  // Inputs before and after the segment, as far as they are there, for their delays.
+  // The steering before and after the segment, as far as it is there, for its delay.
   const auto reach = static_cast<std::size_t>(kLongestDelay_s / step);
-  struct Reaching {
-    SampledInput input;
-    double lead = 0.0;  // samples before the segment
-  };
-  const auto around = [&](std::span<const double> all) -> Reaching {
-    std::size_t lead = 0, tail = 0;
-    while (lead < reach && segment.begin > lead && std::isfinite(all[segment.begin - lead - 1])) ++lead;
-    while (tail < reach && segment.begin + n + tail < all.size() && std::isfinite(all[segment.begin + n + tail]))
-      ++tail;
-    return {{all.subspan(segment.begin - lead, lead + n + tail), step}, static_cast<double>(lead)};
-  };
-  const Reaching steer = around(steer_), speed = around(speed_);
+  std::size_t lead = 0, tail = 0;
+  while (lead < reach && segment.begin > lead && std::isfinite(steer_all[segment.begin - lead - 1])) ++lead;
+  while (tail < reach && segment.begin + n + tail < steer_all.size() &&
+         std::isfinite(steer_all[segment.begin + n + tail]))
+    ++tail;
+  const SampledInput steer{std::span(steer_all).subspan(segment.begin - lead, lead + n + tail), step};
+  const SampledInput speed{std::span(speed_all).subspan(segment.begin, n), step};
 
   const Scalar steer_gain = 1.0 / (1.0 + unknown(DriveUnknown::kSteerScale));
-  // The wheels follow the recorded steering; a recorded speed follows the true one.
-  const Scalar steer_lead = steer.lead - unknown(DriveUnknown::kSteerDelay) / step;
-  const Scalar speed_lead = speed.lead + unknown(DriveUnknown::kSpeedDelay) / step;
+  const Scalar steer_lead = static_cast<double>(lead) - unknown(DriveUnknown::kSteerDelay) / step;
   struct Input {
     Scalar delta;
     Scalar u;
@@ -226,8 +220,9 @@ bool DriveParametricModel::drive(const Segment& segment, const RollingBicycle<Sc
   const SampledInput speed_rate{
       by_pedals ? std::span<const double>(speed_rate_).subspan(segment.begin, n) : std::span<const double>(), step};
   const auto input = [&](double position) -> Input {
-    return {(steer.input.at(Scalar(steer_lead + position)) - unknown(DriveUnknown::kSteerBias)) * steer_gain,
-            speed.input.at(Scalar(speed_lead + position)),
+    const Scalar at = steer_lead + position;
+    return {(steer.at(at) - unknown(DriveUnknown::kSteerBias)) * steer_gain,
+            Scalar(speed.at(position)),
             {by_pedals ? speed_rate.at(position) : 0.0, banked, bank}};
   };
   const bool delayed = delays_outputs(sampled_value(unknown(DriveUnknown::kYawRateDelay)),

@@ -24,8 +24,8 @@ inline constexpr std::string_view kSegmentBank = "bank";
 /// Below it the derivative of the recorded speed moves loads: bodies pitch as slowly.
 inline constexpr double kPedalBand_Hz = 2.0;
 
-/// Unknowns whose derivatives one simulation gives: a bicycle has twelve, and two of its beginning.
-inline constexpr int kDriveStride = 14;
+/// Unknowns whose derivatives one simulation gives: a bicycle has ten, and two of its beginning.
+inline constexpr int kDriveStride = 12;
 
 /// The drive as a parametric model for output error: a `RollingBicycle` (exact geometry) driven by measured steering
 /// and speed, with the states of each segment's beginning as further unknowns: lateral velocity and yaw rate, and of
@@ -44,16 +44,16 @@ inline constexpr int kDriveStride = 14;
 /// two fifths of the bicycle's fastest time constant at the start. Delays shift inputs and outputs by cubic
 /// interpolation. The mass only scales C_f, C_r and I_z: it is never free.
 ///
-/// Noise of the recorded steering would take some of every gain away. By default the steering is therefore replaced
-/// by what is to be expected of it (`numerics::denoised`), and the outputs are not filtered; what is left of the noise
-/// moves the vehicle, and the residual is coloured by it (`steering_noise`), which intervals allow for. A filter that
-/// takes the colour out would make them smaller, and wrong: it weighs most what the steering's noise distorts most,
-/// whose derivatives have the same noise as the residual, and drew delays of drives without any to -25 ms. With
+/// Noise of the recorded steering would take some of every gain away. By default the steering is therefore low-passed
+/// to its own band (`numerics::band_limited`), and the outputs are not; the noise left in that band moves the model,
+/// and the residual is coloured by it (`steering_noise`), which intervals allow for. A filter that takes the
+/// colour out would make them smaller, and wrong: it weighs most what the steering's noise distorts most, whose
+/// derivatives have the same noise as the residual, and drew delays of drives without any to -25 ms. With
 /// `DriveModelOptions::smoothing_Hz` inputs and outputs are smoothed alike instead: a linear time-invariant system
 /// commutes with that exactly, the bicycle to second order in the kernel's length.
 ///
-/// What the model leaves out shows as autocorrelation of the residual: load transfer. Compliance of the
-/// steering is in C_f. Diverged: |v| above 2 u, |r| above 50 rad/s.
+/// What the model leaves out shows as autocorrelation of the residual: load transfer, compliance of the steering
+/// (`steer_scale`, indistinguishable from C_f). Diverged: |v| above 2 u, |r| above 50 rad/s.
 class DriveParametricModel
     : public estimation::AutodiffModel<DriveParametricModel, kDriveStride, estimation::OpenLoopModel> {
  public:

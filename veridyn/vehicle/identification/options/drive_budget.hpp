@@ -20,12 +20,8 @@ struct DrivePrior {
 /// unknown of every output error beside the vehicle's, with such a prior. What the drive says of it corrects the
 /// vehicle's parameters, what it leaves open is in their intervals. Those of roll count where the body rolls.
 inline constexpr std::array kDriveBudget{
-    DrivePrior{DriveUnknown::kSteerScale, 0.03, "measured over true steering, less 1",
-               "ours: ratios of steering gears by data sheet or protractor, which differ between on-centre and lock"},
     DrivePrior{DriveUnknown::kSteerDelay, 0.02, "how late the recorded steering is answered",
                "ours: messages of a CAN bus at 50 to 100 Hz and filters of column sensors are 10 to 20 ms old each"},
-    DrivePrior{DriveUnknown::kSpeedDelay, 0.1, "how late speed is recorded against yaw_rate",
-               "ours: velocities of GNSS receivers and filtered wheel speeds are 0.05 to 0.2 s old"},
     DrivePrior{DriveUnknown::kAccelYDelay, 0.01, "how late accel_y is recorded against yaw_rate",
                "ours: one sample at 100 Hz between two filters of one instrument"},
     DrivePrior{DriveUnknown::kAccelPlace, 0.3, "how far ahead of its given place the accelerometer is",

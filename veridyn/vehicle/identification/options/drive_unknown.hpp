@@ -46,7 +46,6 @@ enum class DriveUnknown : std::size_t {
   kRollRateBias,  ///< where the roll rate is recorded [rad/s]
   kSideslipBias,  ///< of a lateral velocity made of course and heading, over the speed [rad]
   kSteerDelay,    ///< how late the front wheels' force answers the recorded steering [s]
-  kSpeedDelay,    ///< how late the speed is recorded [s]
   kYawRateDelay,  ///< how late the yaw rate is recorded [s]
   kAccelYDelay,
   kCourseDelay,  ///< how late the course is, of which a lateral velocity is made [s]
@@ -54,7 +53,7 @@ enum class DriveUnknown : std::size_t {
   kAccelHeight   ///< how far above it [m]
 };
 /// How many unknowns there are.
-inline constexpr std::size_t kDriveUnknowns = 37;
+inline constexpr std::size_t kDriveUnknowns = 36;
 /// All of them, in order.
 inline constexpr auto kAllDriveUnknowns = enumerators<DriveUnknown, kDriveUnknowns>();
 /// What the model of every structure has of the vehicle.
@@ -97,7 +96,6 @@ inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownNames{"C_f",
                                                                       "roll_rate_bias",
                                                                       "sideslip_bias",
                                                                       "steer_delay",
-                                                                      "speed_delay",
                                                                       "yaw_rate_delay",
                                                                       "accel_y_delay",
                                                                       "course_delay",
@@ -105,9 +103,9 @@ inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownNames{"C_f",
                                                                       "accel_height"};
 /// Their units, in the same order.
 inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownUnits{
-    "N/rad",   "N/rad",   "kg m^2", "m",   "1",     "1", "1", "rad s^2/m", "m", "m",   "1", "1",     "1",
-    "s^2/m^2", "s^2/m^2", "1",      "1",   "rad/s", "1", "1", "1",         "m", "rad", "1", "rad/s", "m/s^2",
-    "1",       "rad",     "rad/s",  "rad", "s",     "s", "s", "s",         "s", "m",   "m"};
+    "N/rad", "N/rad",   "kg m^2",  "m",   "1",     "1",     "1", "rad s^2/m", "m", "m", "1",   "1",
+    "1",     "s^2/m^2", "s^2/m^2", "1",   "1",     "rad/s", "1", "1",         "1", "m", "rad", "1",
+    "rad/s", "m/s^2",   "1",       "rad", "rad/s", "rad",   "s", "s",         "s", "s", "m",   "m"};
 static_assert(!kDriveUnknownNames.back().empty() && !kDriveUnknownUnits.back().empty(), "one is missing");
 /// Whether a parameter is one of these unknowns.
 [[nodiscard]] constexpr bool is_one_of(std::string_view parameter, std::span<const DriveUnknown> unknowns) {

@@ -313,44 +313,12 @@ std::string reason_of(const StructureLadder& ladder, bool contradicts) {
   return reason;
 }
 
-/// All conflicts so far, each with the prior that it began with and what the drive shows now.
-std::vector<BudgetConflict> joined(std::vector<BudgetConflict> all, std::span<const BudgetConflict> more,
-                                   const estimation::OutputErrorEstimate& now) {
-  for (const BudgetConflict& c : more)
-    if (std::ranges::find(all, c.unknown, &BudgetConflict::unknown) == all.end()) all.push_back(c);
-  for (BudgetConflict& c : all) {
-    const auto i = static_cast<Eigen::Index>(c.unknown);
-    c.value = now.theta(i);
-    c.sigma = std::sqrt(now.covariance(i, i));
-  }
-  return all;
-}
-
 }  // namespace
 
 StructureLadder climb_structures(const VehicleProblem& problem, const EquationErrorEstimates* equation_error,
                                  Progress& progress) {
   Climb climb(problem, equation_error, progress);
   StructureLadder ladder = climb.run();
-  // A value that a wider prior lets go may go further still.
-  constexpr int kMostTimes = 3;
-  VehicleIdentifyOptions options = problem.options;
-  std::vector<BudgetConflict> conflicts;
-  for (int time = 0; time < kMostTimes && !climb.contradicts() && ladder.fit.raw.usable(); ++time) {
-    const std::vector<BudgetConflict> found = budget_conflicts(ladder.model, ladder.fit.raw);
-    if (found.empty() || progress.interrupted()) break;
-    options.model = with_widened_priors(options.model, found);
-    progress.stage(fmt::format("once more, with wider priors of {} errors of sensors and tyres", found.size()));
-    StructureLadder again = Climb(with_options(problem, options), equation_error, progress).run();
-    if (progress.interrupted()) {
-      ladder.unfinished.left_out.emplace_back("priors that the drive contradicts were not widened");
-      break;
-    }
-    if (!again.fit.raw.usable()) break;
-    ladder = std::move(again);
-    conflicts = joined(std::move(conflicts), found, ladder.fit.raw);
-  }
-  ladder.conflicts = std::move(conflicts);
   if (!problem.options.structure && !ladder.empty()) ladder.reason = reason_of(ladder, climb.contradicts());
   return ladder;
 }
