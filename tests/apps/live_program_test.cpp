@@ -365,6 +365,44 @@ TEST_F(LiveProgramTest, SoakOfAnHourAtAHundredHertz) {
   run_for(seconds != nullptr ? std::stod(seconds) : 3600.0, 60.0);
 }
 
+TEST_F(LiveProgramTest, DashboardStopsARunThatStandsStillAndLosesDatagrams) {
+  auto p = platform();
+  auto r = rig();
+  auto v = vehicle();
+  ASSERT_TRUE(r->says("running", 20.0)) << r->said();
+  const int port = base_ + 3;
+  const std::string token = file("token", "a-token-of-this-test\n");
+  std::filesystem::permissions(token, std::filesystem::perms::owner_read);
+  Process serve(
+      {"serve", (folder_ / "rig").string(), "--page", fmt::format("127.0.0.1:{}", port), "--token-file", token},
+      folder_ / "serve.txt");
+  const auto status_has = [&](const std::string& text, int tenths) {
+    std::string all;
+    for (int k = 0; k < tenths && all.find(text) == std::string::npos; ++k) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      const PageReader reader(port, "GET /status HTTP/1.1\r\nConnection: close\r\n");
+      all.clear();
+      for (std::string more = reader.read(); !more.empty(); more = reader.read()) all += more;
+    }
+    return all.find(text) != std::string::npos;
+  };
+  ASSERT_TRUE(status_has("\"state\":\"running\"", 200)) << serve.said();
+  // It stands still until its recording no longer counts as growing, and its queue is full.
+  r->signal(SIGSTOP);
+  std::this_thread::sleep_for(std::chrono::milliseconds(2500));
+  auto flood = live::UdpSocket::connected({0x7f000001, static_cast<std::uint16_t>(base_)}, "flood");
+  for (int k = 0; k < 20000; ++k) static_cast<void>(flood.send(std::string(500, 'x')));
+  const std::string body = "{\"request\": \"emergency\"}";
+  const PageReader control(port, fmt::format("POST /control HTTP/1.1\r\nConnection: close\r\nContent-Length: {}\r\n"
+                                             "Authorization: Bearer a-token-of-this-test\r\n",
+                                             body.size()));
+  control.send(body);
+  EXPECT_THAT(control.read().substr(0, 20), HasSubstr(" 204 "));
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  r->signal(SIGCONT);
+  EXPECT_TRUE(status_has("\"state\":\"stopped\"", 200)) << serve.said();
+}
+
 TEST_F(LiveProgramTest, PlatformIsMeasuredByHandAndTheSecondProgramIsToldWhoCommandsIt) {
   auto p = platform();
   ASSERT_TRUE(p->says("takes orders", 20.0)) << p->said();

@@ -61,7 +61,7 @@ void Served::serve(const fs::path& recording, const fs::path& folder) {
   const std::lock_guard lock(mutex_);
   const auto slot =
       std::find_if(slots_.begin(), slots_.end(), [&](const Slot& s) { return !folder.empty() && s.folder == folder; });
-  Slot made{.folder = folder, .run = std::move(run), .stopped = {}};
+  Slot made{.folder = folder, .run = std::move(run), .asked = {}};
   if (slot == slots_.end()) {
     slots_.push_back(std::move(made));
   } else {
@@ -102,9 +102,12 @@ std::vector<live::ShownRun> Served::runs() {
   std::vector<live::ShownRun> all;
   for (Slot& s : slots_) {
     all.push_back(s.run->shown());
-    constexpr std::chrono::seconds kPatience(2);
-    if (s.run->state() == live::RigState::kStopped || !all.back().grows) s.stopped.reset();
-    if (s.stopped && Clock::now() - *s.stopped > kPatience)
+    constexpr std::chrono::seconds kPatience(2), kGivesUp(30);
+    if (s.run->state() == live::RigState::kStopped || (s.asked && Clock::now() - *s.asked > kGivesUp)) s.asked.reset();
+    if (!s.asked) continue;
+    // A run on a busy machine loses datagrams.
+    static_cast<void>(ask_to_stop(s));
+    if (Clock::now() - *s.asked > kPatience)
       all.back().trouble = "it was asked to stop and has not: use its own page, keys or signal";
   }
   return all;
@@ -126,16 +129,22 @@ std::string Served::platform(std::size_t run) const {
 }
 
 bool Served::stop(std::size_t run) {
+  // A run that stands still for a while is one to stop, not one to leave alone.
+  constexpr double kLately = 30.0;  // [s]
+  if (run >= slots_.size() || !slots_[run].run->grows(kLately)) return false;
+  slots_[run].asked = Clock::now();
+  return ask_to_stop(slots_[run]);
+}
+
+bool Served::ask_to_stop(const Slot& slot) {
 #ifdef VERIDYN_HAS_SOCKETS
-  if (run >= slots_.size() || !slots_[run].run->grows() || !slots_[run].run->study()) return false;
-  live::Sender to = slots_[run].run->study()->telemetry;
-  if (to.port == 0) return false;
+  if (!slot.run->study() || slot.run->study()->telemetry.port == 0) return false;
+  live::Sender to = slot.run->study()->telemetry;
   constexpr std::uint32_t kLoopback = 0x7f000001;
   if (to.address == 0) to.address = kLoopback;
-  slots_[run].stopped = Clock::now();
   return live::UdpSocket::connected(to, "emergency stop").send(live::kEmergencyPacket);
 #else
-  static_cast<void>(run);
+  static_cast<void>(slot);
   return false;
 #endif
 }

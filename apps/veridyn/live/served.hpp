@@ -32,18 +32,20 @@ class Served {
   [[nodiscard]] std::string platform(std::size_t run) const;
   /// Work in the folders, each as JSON.
   [[nodiscard]] const std::vector<std::string>& work() const { return work_; }
-  /// Asks a run to stop at once, as anybody may: by a datagram to where it listens. @return whether it could be asked
+  /// Asks a run to stop at once, as anybody may: by a datagram to where it listens, and by another whenever `runs` is
+  /// called, until it has stopped or half a minute has passed. @return whether it could be asked
   bool stop(std::size_t run);
 
  private:
   using Clock = std::chrono::steady_clock;
   /// A recording that was named, or the newest of a folder.
   struct Slot {
-    std::filesystem::path folder;              ///< empty of a recording that was named
-    std::shared_ptr<live::RecordedRun> run;    ///< nothing: the folder has none yet
-    std::optional<Clock::time_point> stopped;  ///< when it was asked to
+    std::filesystem::path folder;            ///< empty of a recording that was named
+    std::shared_ptr<live::RecordedRun> run;  ///< nothing: the folder has none yet
+    std::optional<Clock::time_point> asked;  ///< to stop, which it has not yet
   };
   [[nodiscard]] std::shared_ptr<live::RecordedRun> run_at(std::size_t run) const;
+  static bool ask_to_stop(const Slot& slot);
   void look_into(const std::filesystem::path& folder);
   void serve(const std::filesystem::path& recording, const std::filesystem::path& folder);
 

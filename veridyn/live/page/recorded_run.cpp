@@ -14,19 +14,17 @@ namespace fs = std::filesystem;
 
 /// Bytes of statuses that are kept: a quarter of an hour at 20 Hz; of longer runs every second one, and so on.
 constexpr std::size_t kMostBytes = 64U << 20U;
-/// A recorder writes four times a second [s].
-constexpr double kStopsGrowing = 2.0;
 
 }  // namespace
 
 RecordedRun::RecordedRun(const fs::path& path, double rate) : file_(path), apart_(1.0 / rate) {
   std::error_code error;
   const auto age = fs::file_time_type::clock::now() - fs::last_write_time(path, error);
-  if (!error && age < std::chrono::duration<double>(kStopsGrowing)) grew_ = Clock::now();
+  if (!error) grew_ = Clock::now() - std::chrono::duration_cast<Clock::duration>(std::max(age, decltype(age)::zero()));
 }
 
-bool RecordedRun::grows() const {
-  return trouble_.empty() && grew_ && Clock::now() - *grew_ < std::chrono::duration<double>(kStopsGrowing);
+bool RecordedRun::grows(double within) const {
+  return trouble_.empty() && grew_ && Clock::now() - *grew_ < std::chrono::duration<double>(within);
 }
 
 void RecordedRun::advance(Clock::duration budget) {

@@ -39,7 +39,8 @@ class RecordedRun {
 
   /// Of the recording; nothing before its head is read.
   [[nodiscard]] const std::optional<LiveStudy>& study() const { return study_; }
-  [[nodiscard]] bool grows() const;
+  /// Whether it grew lately: a recorder writes four times a second. @param within [s]
+  [[nodiscard]] bool grows(double within = 2.0) const;
   /// As far as it was read.
   [[nodiscard]] RigState state() const { return rig_ ? rig_->rig().state() : RigState::kParked; }
   /// Why it cannot be shown any further; empty where it can.
