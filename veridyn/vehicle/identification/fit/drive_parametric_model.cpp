@@ -26,7 +26,7 @@ namespace {
 constexpr double kLargestYawRate = 50.0;
 
 /// Noise of the steering over its rms below which nothing is taken off.
-constexpr double kNoNoise = 1e-4;
+constexpr double kNoNoise = 1e-3;
 
 /// Derivatives with respect to initial conditions begin as one and count for nothing below this.
 constexpr double kForgotten = 1e-8;
@@ -74,7 +74,7 @@ DriveParametricModel::DriveParametricModel(const DriveSignals& signals, std::spa
   const GridSignal& steer = signals[DriveSignal::kSteer];
   if (options.smoothing_Hz < 0.0) {
     numerics::BandLimited limited =
-        numerics::band_limited(steer.value, grid_.rate_Hz(), kNoNoise * numerics::rms(steer.value));
+        numerics::denoised(steer.value, grid_.rate_Hz(), kNoNoise * numerics::rms(steer.value));
     steer_ = std::move(limited.value);
     steer_error_share_ = limited.band_Hz > 0.0 ? limited.noise_share : 0.0;
   } else {
