@@ -3,6 +3,10 @@
 #include <malloc.h>
 #endif
 
+#ifdef VERIDYN_HAS_GLOG
+#include <glog/logging.h>
+#endif
+
 #include <array>
 
 #include "apps/veridyn/command_line.hpp"
@@ -20,11 +24,19 @@ void keep_freed_memory() {
 #endif
 }
 
+/// Ceres logs of a trial that diverges, of which results have the message, in words of its own.
+void keep_ceres_quiet() {
+#ifdef VERIDYN_HAS_GLOG
+  FLAGS_minloglevel = google::GLOG_FATAL;
+#endif
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   using namespace veridyn::app;
   keep_freed_memory();
+  keep_ceres_quiet();
   const std::array commands = {demo_command(),        init_command(),        inspect_command(),   simulate_command(),
                                reconstruct_command(), identify_command(),    track_command(),     validate_command(),
                                scale_command(),       sensitivity_command(), reproduce_command(), export_command(),

@@ -108,6 +108,32 @@ TEST(VehicleIdentification, FindsTheDelayOfTheSteering) {
   EXPECT_LT(relative(id, VehicleMethod::kOutputError, "C_f", p.C_f), 0.02);
 }
 
+void expect_held(const VehicleIdentification& id, const char* name, double truth) {
+  const Parameter* p = id.find(VehicleMethod::kOutputError)->find(name);
+  ASSERT_NE(p, nullptr) << name;
+  EXPECT_LE(p->low95, truth) << name;
+  EXPECT_GE(p->high95, truth) << name;
+}
+
+// Ten standard deviations of its prior, which would hold it back.
+TEST(VehicleIdentification, WidensAPriorThatTheDriveContradicts) {
+  const VehicleParameters<double> p = family_car();
+  DriveSensorSet sensors = reference_drive_sensors();
+  sensors[DriveSensorKind::kAccelY].delay_s = 0.1;
+  const VehicleIdentification id = identify(lively_drive(p, 3), sensors, 1);
+  EXPECT_NEAR(id.find(VehicleMethod::kOutputError)->find("accel_y_delay")->value, 0.1, 0.01);
+  for (const auto& [name, truth] : {std::pair{"accel_y_delay", 0.1}, {"C_f", p.C_f}, {"C_r", p.C_r}, {"I_z", p.I_z}})
+    expect_held(id, name, truth);
+  const auto row = std::ranges::find(id.checks, estimation::Check::kBeyondPrior, &estimation::Evidence::check);
+  ASSERT_NE(row, id.checks.end());
+  EXPECT_EQ(row->about, "accel_y, yaw_rate");
+  EXPECT_EQ(row->outcome, estimation::Outcome::kCare);
+  // Without a fault no prior is in the way.
+  const VehicleIdentification clean = identify(lively_drive(p, 3), reference_drive_sensors(), 1);
+  EXPECT_EQ(std::ranges::find(clean.checks, estimation::Check::kBeyondPrior, &estimation::Evidence::check),
+            clean.checks.end());
+}
+
 TEST(VehicleIdentification, SaysThatStraightDrivingExcitesNothing) {
   const VehicleParameters<double> p = family_car();
   const VehicleIdentification id = identify(lively_drive(p, 1, 1e-4), reference_drive_sensors(), 1);

@@ -129,6 +129,7 @@ VehicleIdentification identify_structure(const VehicleProblem& problem,
                                                        .by_noise = by_noise,
                                                        .parts = parts,
                                                        .delay = ladder.delay,
+                                                       .conflicts = ladder.conflicts,
                                                        .structure_doubts = out.structure_doubts,
                                                        .unfinished = unfinished,
                                                        .further = more});

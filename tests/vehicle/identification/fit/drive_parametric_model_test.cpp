@@ -206,6 +206,23 @@ TEST(DriveParametricModel, AccelerometersElsewhereMoveWithTheBody) {
   expect_equal(moved({0.0, 0.0, 0.4}).segment(1, inner), -0.4 * rate(4), "above");
 }
 
+// The model has nothing of what an accelerometer that is late shows at first, nor of what one that is early shows last.
+TEST(DriveParametricModel, WhatADelayMayShowFromOutsideASegmentIsNotCompared) {
+  const DriveSignals signals = rolling_signals(testing::perfect_sensors());
+  const std::vector<TimeSpan> spans{{4.0, 8.0}};
+  DriveModelOptions options;
+  options.prior[DriveUnknown::kAccelYDelay] = 0.02;
+  const auto measured = [&] { return DriveParametricModel(signals, spans, family_car(), options).measured().front(); };
+  const estimation::RowMatrix free = measured();
+  const auto edge = std::lround(3.0 * 0.02 * signals.grid.rate_Hz());
+  ASSERT_GT(edge, 2);
+  EXPECT_TRUE(free.col(0).allFinite());
+  EXPECT_TRUE(free.col(1).head(edge).array().isNaN().all() && free.col(1).tail(edge).array().isNaN().all());
+  EXPECT_TRUE(free.col(1).segment(edge, free.rows() - 2 * edge).allFinite());
+  options.free[DriveUnknown::kAccelYDelay] = false;
+  EXPECT_TRUE(measured().allFinite());
+}
+
 // The unknowns of a segment's beginning are what its first sample differs from steady cornering by.
 TEST(DriveParametricModel, SegmentsBeginOffSteadyCorneringByTheirInitialConditions) {
   const DriveSignals signals = rolling_signals(testing::perfect_sensors());

@@ -111,13 +111,24 @@ Eigen::Index DriveParametricModel::samples_before_divergence(std::size_t segment
   return driven;
 }
 
+Eigen::Index DriveParametricModel::out_of_reach(DriveSignal signal) const {
+  if (signal != DriveSignal::kYawRate && signal != DriveSignal::kAccelY) return 0;
+  const DriveUnknown delay = signal == DriveSignal::kYawRate ? DriveUnknown::kYawRateDelay : DriveUnknown::kAccelYDelay;
+  constexpr double kStandardDeviations = 3.0;
+  const double spread = options_.free[delay] ? kStandardDeviations * options_.prior[delay] : 0.0;
+  const double longest = std::min(kLongestDelay_s, std::abs(options_.start[delay]) + spread);
+  return static_cast<Eigen::Index>(std::ceil(longest / grid_.step - 1e-9));
+}
+
 std::vector<estimation::RowMatrix> DriveParametricModel::measured() const {
   std::vector<estimation::RowMatrix> all;
   for (const Segment& s : segments_) {
-    estimation::RowMatrix m(s.samples, signed_index(compared_.size()));
-    for (Eigen::Index k = 0; k < s.samples; ++k)
-      for (std::size_t j = 0; j < compared_.size(); ++j)
+    estimation::RowMatrix m = estimation::RowMatrix::Constant(s.samples, signed_index(compared_.size()), kNaN);
+    for (std::size_t j = 0; j < compared_.size(); ++j) {
+      const Eigen::Index edge = std::min(out_of_reach(compared_[j].signal), s.samples / 4);
+      for (Eigen::Index k = edge; k < s.samples - edge; ++k)
         m(k, signed_index(j)) = compared_[j].value[s.begin + static_cast<std::size_t>(k)];
+    }
     all.push_back(std::move(m));
   }
   return all;

@@ -44,11 +44,11 @@ inline constexpr int kDriveStride = 12;
 /// two fifths of the bicycle's fastest time constant at the start. Delays shift inputs and outputs by cubic
 /// interpolation. The mass only scales C_f, C_r and I_z: it is never free.
 ///
-/// Noise of the recorded steering would take some of every gain away. By default the steering is therefore low-passed
-/// to its own band (`numerics::band_limited`), and the outputs are not; the noise left in that band moves the model,
-/// and the residual is coloured by it (`steering_noise`), which intervals allow for. A filter that takes the
-/// colour out would make them smaller, and wrong: it weighs most what the steering's noise distorts most, whose
-/// derivatives have the same noise as the residual, and drew delays of drives without any to -25 ms. With
+/// Noise of the recorded steering would take some of every gain away. By default the steering is therefore replaced
+/// by what is to be expected of it (`numerics::denoised`), and the outputs are not filtered; what is left of the noise
+/// moves the vehicle, and the residual is coloured by it (`steering_noise`), which intervals allow for. A filter that
+/// takes the colour out would make them smaller, and wrong: it weighs most what the steering's noise distorts most,
+/// whose derivatives have the same noise as the residual, and drew delays of drives without any to -25 ms. With
 /// `DriveModelOptions::smoothing_Hz` inputs and outputs are smoothed alike instead: a linear time-invariant system
 /// commutes with that exactly, the bicycle to second order in the kernel's length.
 ///
@@ -149,6 +149,9 @@ class DriveParametricModel
   /// Over all segments.
   [[nodiscard]] SpeedRange speeds() const;
   [[nodiscard]] bool delays_outputs(double yaw_rate_delay, double accel_delay) const;
+  /// Samples at both ends of a segment of which a delay within three standard deviations of its prior may show what was
+  /// before or is after it.
+  [[nodiscard]] Eigen::Index out_of_reach(DriveSignal signal) const;
 
   numerics::UniformGrid grid_;
   std::array<double, 3> accel_position_{};

@@ -193,15 +193,17 @@ std::vector<Evidence> rows_of(const VehicleProblem& problem, const VehicleFindin
   const auto add = [&](std::vector<Evidence> more) { std::ranges::move(more, std::back_inserter(rows)); };
   add(estimation::unfinished_rows(findings.unfinished));
   // A contradiction in the recording is the cause of others.
+  bool agrees = true;
   if (problem.recording != nullptr) {
     KnownByModel known;
     if (const Parameter* p = findings.chosen.find(kDriveUnknownNames[DriveUnknown::kRollGradient]))
       known.roll_gradient = p->value;
     // A model of wrong channels says nothing of their clocks.
-    if (!contradicts_itself(*problem.recording) && !is_in_doubt(*problem.recording, known))
-      known.delay = findings.delay;
+    agrees = !contradicts_itself(*problem.recording) && !is_in_doubt(*problem.recording, known);
+    if (agrees) known.delay = findings.delay;
     add(recording_rows(*problem.recording, known));
   }
+  if (agrees) add(conflict_rows(findings.conflicts));
   add(check_residuals(problem, findings));
   rows.push_back(row_of(Check::kSimulation, "", passed_or(here != nullptr, Outcome::kFailed)));
   const AgreementChecks agreement = check_agreement(problem, findings);

@@ -8,6 +8,7 @@
 #include "veridyn/estimation/judgement/judgement.hpp"
 #include "veridyn/estimation/judgement/unfinished_search.hpp"
 #include "veridyn/estimation/result/analysis.hpp"
+#include "veridyn/vehicle/identification/evidence/budget_conflicts.hpp"
 #include "veridyn/vehicle/identification/evidence/drive_evidence.hpp"
 #include "veridyn/vehicle/identification/evidence/vehicle_agreement.hpp"
 #include "veridyn/vehicle/identification/fit/vehicle_estimates.hpp"
@@ -26,6 +27,7 @@ struct VehicleFindings {
   const DriveValidation& by_noise;    ///< see with_noisier_inputs
   std::optional<PartsAgreement> parts = {};
   std::optional<DelayByModel> delay = {};                 ///< see StructureLadder
+  std::span<const BudgetConflict> conflicts = {};         ///< the same
   std::span<const StructureDoubt> structure_doubts = {};  ///< which the intervals of `chosen` have
   estimation::UnfinishedSearch unfinished = {};           ///< by an interruption
   std::span<const estimation::Evidence> further = {};     ///< rows of what else was done with the estimate

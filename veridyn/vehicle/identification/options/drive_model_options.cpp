@@ -267,10 +267,9 @@ const KeyTable<DriveModelOptions>& DriveModelOptions::keys() {
                   true},
                  read_estimate)
           .number("smoothing", &O::smoothing_Hz, "Hz", kNotNegative,
-                  "cut-off of the kernel through which inputs and outputs alike go before they are compared: noise of "
-                  "the steering acts on the lateral acceleration at once, and what it adds to the power of the slip "
-                  "angle is taken off C_f; 0: none")
-          .otherwise("4, or a tenth of the rate, where the steering's noise is above 1e-4 of the steering")
+                  "cut-off of the kernel through which inputs and outputs alike go before they are compared, in place "
+                  "of the filter that takes the steering's noise off; 0: none")
+          .otherwise("the steering's own Wiener filter, where its noise is above 0.1 % of it, and no other")
           .other({"start", "SI", "by the names of unknowns", "by the vehicle's geometry",
                   "where the search begins; also the mean of the prior", true},
                  [](const StudyTable& t, const std::string& key, O& o) {

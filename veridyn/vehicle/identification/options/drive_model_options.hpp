@@ -35,9 +35,9 @@ struct DriveModelOptions {
   /// Standard deviation of what is known beforehand; infinite: nothing; NaN: by the geometry. At one constant speed the
   /// biases of steering, yaw rate and lateral acceleration are not distinguishable without it.
   PerDriveUnknown<double> prior{};
-  /// Cut-off of the kernel before the comparison [Hz]; 0: none; negative: by the steering's noise, which acts on the
-  /// lateral acceleration at once (2 C_f/m times it): 0.1 deg of white noise at 100 Hz on 0.9 deg rms of slip takes
-  /// 1.3 % off C_f, 4 Hz leave a tenth of that.
+  /// Cut-off of the kernel before the comparison [Hz]; 0: none; negative: the steering alone is filtered, by its own
+  /// spectrum (`numerics::denoised`). Noise of the steering acts on the lateral acceleration at once (2 C_f/m times
+  /// it), and what it adds to the power of the slip angle is taken off the stiffnesses.
   double smoothing_Hz = -1.0;
   /// C_f, C_r and I_z are looked for between their start over this and times it; no key.
   double search_factor = 1e3;

@@ -7,6 +7,7 @@
 
 #include "veridyn/core/progress.hpp"
 #include "veridyn/estimation/judgement/unfinished_search.hpp"
+#include "veridyn/vehicle/identification/evidence/budget_conflicts.hpp"
 #include "veridyn/vehicle/identification/evidence/drive_evidence.hpp"
 #include "veridyn/vehicle/identification/fit/vehicle_estimates.hpp"
 #include "veridyn/vehicle/identification/structure/tried_structure.hpp"
@@ -21,8 +22,9 @@ struct StructureLadder {
   OutputErrorResult fit = {};    ///< of it, to the end
   /// How late the vehicle answers the recorded steering, where that is estimated.
   std::optional<DelayByModel> delay = {};
-  std::vector<StructureDoubt> doubts;  ///< what the structures that are left open would change
-  std::string reason;                  ///< one sentence; empty where the study fixes the structure
+  std::vector<BudgetConflict> conflicts = {};  ///< what the drive shows against its priors, which `model` has widened
+  std::vector<StructureDoubt> doubts;          ///< what the structures that are left open would change
+  std::string reason;                          ///< one sentence; empty where the study fixes the structure
   /// What an interruption kept it from; `fit` is the best that was there by then.
   estimation::UnfinishedSearch unfinished = {};
   [[nodiscard]] bool empty() const { return tried.empty(); }
@@ -33,7 +35,8 @@ struct StructureLadder {
 /// too low leaves no more than the sensors do. Where roll is likelier what tyres do beside is tried too (relaxation,
 /// saturation). One that is not taken leaves a doubt, by its probability. A recording that contradicts itself (a failed
 /// row) says nothing of the structure: only the bicycle is fitted to it; nor is anything richer fitted to rounding
-/// errors. Interrupted, it takes the structure so of those whose fits had ended; of none, where the search of the first
+/// errors. Where the drive contradicts a prior of the budget the climb is made once more with that prior widened.
+/// Interrupted, it takes the structure so of those whose fits had ended; of none, where the search of the first
 /// stood.
 [[nodiscard]] StructureLadder climb_structures(const VehicleProblem& problem,
                                                const EquationErrorEstimates* equation_error, Progress& progress);
