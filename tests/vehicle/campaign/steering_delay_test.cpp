@@ -30,6 +30,7 @@ struct Found {
   std::string text, about;
   DriveStructure structure = DriveStructure::kBicycle;
   double I_z_error = kNaN;  ///< a share
+  double I_z_sigma = kNaN;  ///< the same
   bool I_z_inside = false;  ///< whether its interval of 95 % holds the truth
 };
 
@@ -51,6 +52,7 @@ Found found(VehicleStudy study, double late_s) {
     const estimation::Parameter* I_z = best->find("I_z");
     const double truth = study.truth.at("I_z");
     out.I_z_error = I_z->value / truth - 1.0;
+    out.I_z_sigma = I_z->sigma / truth;
     out.I_z_inside = I_z->low95 <= truth && truth <= I_z->high95;
   }
   return out;
@@ -63,7 +65,9 @@ TEST(SteeringDelay, IsEstimatedAndCorrectedByDefault) {
     const Found f = found(study, late_s);
     EXPECT_EQ(f.outcome, Outcome::kPassed) << f.text;
     EXPECT_NEAR(f.delay_s, -late_s, 0.002);
-    EXPECT_LT(std::abs(f.I_z_error), 0.05);  // noise of the steering leaves 3.7 %
+    // Of eight such drives half are within 3.7 %.
+    EXPECT_LT(std::abs(f.I_z_error), 2.0 * f.I_z_sigma);
+    EXPECT_LT(f.I_z_sigma, 0.05);
     EXPECT_EQ(f.about, "steer, yaw_rate");
   }
 }

@@ -14,23 +14,15 @@ using estimation::Cause;
 using estimation::Check;
 using estimation::Evidence;
 
-/// The channels that an error is of, and what is wrong with them; of tyres the unknown itself. Of two that do not go
-/// together in time either may be late.
-struct Subject {
-  std::string_view name;
-  Cause cause;
-};
-Subject subject_of(DriveUnknown unknown) {
+/// The channels that do not go together in time, either of which may be late; empty of what is no delay.
+std::string_view channels_of(DriveUnknown unknown) {
   switch (unknown) {
     case DriveUnknown::kSteerDelay:
-      return {"steer, yaw_rate", Cause::kDelay};
+      return "steer, yaw_rate";
     case DriveUnknown::kAccelYDelay:
-      return {"accel_y, yaw_rate", Cause::kDelay};
-    case DriveUnknown::kAccelPlace:
-    case DriveUnknown::kAccelHeight:
-      return {"accel_y", Cause::kPlace};
+      return "accel_y, yaw_rate";
     default:
-      return {kDriveUnknownNames[unknown], Cause::kMissingTerm};
+      return {};
   }
 }
 
@@ -42,30 +34,31 @@ std::vector<BudgetConflict> budget_conflicts(const DriveModelOptions& model,
   for (const DrivePrior& budget : kDriveBudget) {
     const DriveUnknown u = budget.unknown;
     const auto i = static_cast<Eigen::Index>(u);
-    if (!model.free[u] || !std::isfinite(model.prior[u])) continue;
+    if (channels_of(u).empty() || !model.free[u] || !std::isfinite(model.prior[u])) continue;
     const double left = model.prior[u] * model.prior[u] - fit.covariance(i, i);
     const double off = fit.theta(i) - model.start[u];
     if (left > 0.0 && off * off > estimation::kBeyondChance * estimation::kBeyondChance * left)
-      conflicts.push_back({u, fit.theta(i), std::sqrt(fit.covariance(i, i)), model.prior[u], std::sqrt(left)});
+      conflicts.push_back({.unknown = u,
+                           .value = fit.theta(i),
+                           .sigma = std::sqrt(fit.covariance(i, i)),
+                           .mean = model.start[u],
+                           .prior = model.prior[u],
+                           .by_chance = std::sqrt(left)});
   }
   return conflicts;
 }
 
-std::optional<BudgetConflict> strongest_sensor_conflict(std::span<const BudgetConflict> conflicts) {
-  std::optional<BudgetConflict> strongest;
-  const auto strength = [](const BudgetConflict& c) { return std::abs(c.value) / c.by_chance; };
-  for (const BudgetConflict& c : conflicts) {
-    if (subject_of(c.unknown).cause == Cause::kMissingTerm) continue;
-    if (!strongest || strength(c) > strength(*strongest)) strongest = c;
-  }
-  return strongest;
+std::optional<BudgetConflict> strongest(std::span<const BudgetConflict> conflicts) {
+  if (conflicts.empty()) return std::nullopt;
+  return std::ranges::max(conflicts, {},
+                          [](const BudgetConflict& c) { return std::abs(c.value - c.mean) / c.by_chance; });
 }
 
 DriveModelOptions with_widened_prior(DriveModelOptions model, const BudgetConflict& conflict) {
   // A value one standard deviation off is still held back by a share sigma^2/value^2.
   constexpr double kOverValue = 2.0;
   double& prior = model.prior[conflict.unknown];
-  prior = std::max(prior, kOverValue * std::abs(conflict.value - model.start[conflict.unknown]));
+  prior = std::max(prior, kOverValue * std::abs(conflict.value - conflict.mean));
   return model;
 }
 
@@ -85,10 +78,9 @@ std::vector<Evidence> conflict_rows(std::span<const BudgetConflict> conflicts) {
   std::vector<Evidence> rows;
   for (const BudgetConflict& c : conflicts) {
     if (c.unknown == DriveUnknown::kSteerDelay) continue;
-    const Subject subject = subject_of(c.unknown);
-    Evidence row =
-        estimation::row_of(Check::kBeyondPrior, std::string(subject.name), c.value / c.prior, c.sigma / c.prior);
-    row.cause = row.passed() ? Cause::kNone : subject.cause;
+    Evidence row = estimation::row_of(Check::kBeyondPrior, std::string(channels_of(c.unknown)),
+                                      (c.value - c.mean) / c.prior, c.sigma / c.prior);
+    row.cause = row.passed() ? Cause::kNone : Cause::kDelay;
     const auto* const budget = std::ranges::find(kDriveBudget, c.unknown, &DrivePrior::unknown);
     rows.push_back(std::move(row)
                        .with("unknown", std::string(kDriveUnknownNames[c.unknown]))
@@ -96,7 +88,8 @@ std::vector<Evidence> conflict_rows(std::span<const BudgetConflict> conflicts) {
                        .with("found", c.value)
                        .with("found_sigma", c.sigma)
                        .with("unit", std::string(kDriveUnknownUnits[c.unknown]))
-                       .with("expected", c.prior));
+                       .with("expected", c.mean)
+                       .with("expected_sigma", c.prior));
   }
   return rows;
 }

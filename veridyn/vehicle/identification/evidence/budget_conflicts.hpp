@@ -10,11 +10,13 @@
 
 namespace veridyn::vehicle {
 
-/// An unknown of `kDriveBudget` of which a drive says what its prior all but excludes.
+/// A delay of `kDriveBudget` of which a drive says what its prior all but excludes. Of a place or of tyres it is none:
+/// beyond their priors they stand for what the model lacks, and a wider prior would let them take more of it (a car
+/// that rolls had its accelerometer 1.7 m behind, and C_f at twice its value).
 struct BudgetConflict {
   DriveUnknown unknown = {};
   double value = 0.0, sigma = 0.0;  ///< as the drive shows it, in the unit of the unknown
-  double prior = 0.0;               ///< standard deviation that was expected
+  double mean = 0.0, prior = 0.0;   ///< what was expected, and its standard deviation
   double by_chance = 0.0;           ///< standard deviation of the value, were the prior right
 };
 
@@ -24,9 +26,8 @@ struct BudgetConflict {
 [[nodiscard]] std::vector<BudgetConflict> budget_conflicts(const DriveModelOptions& model,
                                                            const estimation::OutputErrorEstimate& fit);
 
-/// Of those of sensors the one that is least likely by chance; nothing where there is none. What tyres do has limits
-/// that no recording moves: beyond them it stands for something that the model lacks.
-[[nodiscard]] std::optional<BudgetConflict> strongest_sensor_conflict(std::span<const BudgetConflict> conflicts);
+/// The one that is least likely by chance; nothing where there is none. Others may follow from it.
+[[nodiscard]] std::optional<BudgetConflict> strongest(std::span<const BudgetConflict> conflicts);
 
 /// The options with a prior of this unknown twice as wide as what the drive shows. A narrow prior that is wrong holds
 /// its unknown back by much more than the standard error that it then states, and moves all others.

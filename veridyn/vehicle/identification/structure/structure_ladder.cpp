@@ -319,16 +319,14 @@ StructureLadder climb_structures(const VehicleProblem& problem, const EquationEr
                                  Progress& progress) {
   Climb climb(problem, equation_error, progress);
   StructureLadder ladder = climb.run();
-  // The strongest first: others may follow from it.
   constexpr int kMostWidened = 3;
   VehicleIdentifyOptions options = problem.options;
   std::vector<BudgetConflict> widened;
   while (std::ssize(widened) < kMostWidened && !climb.contradicts() && ladder.fit.raw.usable()) {
-    const std::optional<BudgetConflict> strongest =
-        strongest_sensor_conflict(budget_conflicts(ladder.model, ladder.fit.raw));
-    if (!strongest || progress.interrupted()) break;
-    options.model = with_widened_prior(options.model, *strongest);
-    progress.stage(fmt::format("once more, with a wider prior of {}", kDriveUnknownNames[strongest->unknown]));
+    const std::optional<BudgetConflict> conflict = strongest(budget_conflicts(ladder.model, ladder.fit.raw));
+    if (!conflict || progress.interrupted()) break;
+    options.model = with_widened_prior(options.model, *conflict);
+    progress.stage(fmt::format("once more, with a wider prior of {}", kDriveUnknownNames[conflict->unknown]));
     StructureLadder again = Climb(with_options(problem, options), equation_error, progress).run();
     if (progress.interrupted()) {
       ladder.unfinished.left_out.emplace_back("a prior that the drive contradicts was not widened");
@@ -336,7 +334,7 @@ StructureLadder climb_structures(const VehicleProblem& problem, const EquationEr
     }
     if (!again.fit.raw.usable()) break;
     ladder = std::move(again);
-    widened.push_back(*strongest);
+    widened.push_back(*conflict);
   }
   ladder.conflicts = conflicts_now(std::move(widened), ladder.model, ladder.fit.raw);
   if (!problem.options.structure && !ladder.empty()) ladder.reason = reason_of(ladder, climb.contradicts());

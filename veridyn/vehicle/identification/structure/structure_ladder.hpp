@@ -35,7 +35,7 @@ struct StructureLadder {
 /// too low leaves no more than the sensors do. Where roll is likelier what tyres do beside is tried too (relaxation,
 /// saturation). One that is not taken leaves a doubt, by its probability. A recording that contradicts itself (a failed
 /// row) says nothing of the structure: only the bicycle is fitted to it; nor is anything richer fitted to rounding
-/// errors. Where the drive contradicts a prior of the budget the climb is made once more with that prior widened.
+/// errors. Where the drive contradicts the prior of a delay the climb is made once more with that prior widened.
 /// Interrupted, it takes the structure so of those whose fits had ended; of none, where the search of the first
 /// stood.
 [[nodiscard]] StructureLadder climb_structures(const VehicleProblem& problem,
