@@ -115,9 +115,12 @@ Eigen::Index DriveParametricModel::out_of_reach(DriveSignal signal) const {
   if (signal != DriveSignal::kYawRate && signal != DriveSignal::kAccelY) return 0;
   const DriveUnknown delay = signal == DriveSignal::kYawRate ? DriveUnknown::kYawRateDelay : DriveUnknown::kAccelYDelay;
   constexpr double kStandardDeviations = 3.0;
+  // So many show the first or last value of the model, which is hardly another by then.
+  constexpr Eigen::Index kHeld = 3;
   const double spread = options_.free[delay] ? kStandardDeviations * options_.prior[delay] : 0.0;
   const double longest = std::min(kLongestDelay_s, std::abs(options_.start[delay]) + spread);
-  return static_cast<Eigen::Index>(std::ceil(longest / grid_.step - 1e-9));
+  const auto samples = static_cast<Eigen::Index>(std::ceil(longest / grid_.step - 1e-9));
+  return samples > kHeld ? samples : 0;
 }
 
 std::vector<estimation::RowMatrix> DriveParametricModel::measured() const {

@@ -150,7 +150,7 @@ class DriveParametricModel
   [[nodiscard]] SpeedRange speeds() const;
   [[nodiscard]] bool delays_outputs(double yaw_rate_delay, double accel_delay) const;
   /// Samples at both ends of a segment of which a delay within three standard deviations of its prior may show what was
-  /// before or is after it.
+  /// before or is after it; none where those are three or fewer.
   [[nodiscard]] Eigen::Index out_of_reach(DriveSignal signal) const;
 
   numerics::UniformGrid grid_;
