@@ -48,18 +48,6 @@ constexpr double kLongestLag_s = 8.0;
 /// Middle of the low-pass's transition over its pass band.
 constexpr double kMiddle = 0.5 * (1.0 + kTransition);
 
-/// Stretches without a hole, of `least` samples or more.
-std::vector<std::pair<std::size_t, std::size_t>> whole_stretches(const std::vector<double>& x, std::size_t least) {
-  std::vector<std::pair<std::size_t, std::size_t>> out;
-  for (std::size_t begin = 0; begin < x.size();) {
-    std::size_t end = begin;
-    while (end < x.size() && std::isfinite(x[end])) ++end;
-    if (end - begin >= least) out.emplace_back(begin, end);
-    begin = std::max(end, begin + 1);
-  }
-  return out;
-}
-
 /// Autocovariances at lags up to `longest`, divided by all samples, so that no spectrum of them is negative.
 std::vector<double> autocovariances(const std::vector<double>& x, double mean,
                                     std::span<const std::pair<std::size_t, std::size_t>> stretches,
@@ -80,16 +68,16 @@ double parzen(double share) {
   return share <= 0.5 ? 1.0 - 6.0 * share * share * (1.0 - share) : 2.0 * std::pow(1.0 - share, 3);
 }
 
-/// A symmetric filter: its middle tap, then those to either side.
-struct SymmetricTaps {
-  std::vector<double> tap;
+/// The Wiener filter for white noise, which passes nothing above `stop` (as a share of half the rate).
+struct WienerFilter {
+  FirKernel kernel;
   double mean_gain = 0.0;  ///< over all frequencies
 };
-
-/// Of the Wiener filter for white noise, which passes nothing above `stop` (as a share of half the rate).
-SymmetricTaps wiener_taps(const std::vector<double>& autocovariance, double noise, double stop) {
+WienerFilter wiener_filter(const std::vector<double>& autocovariance, double noise, double stop) {
   const std::size_t longest = autocovariance.size() - 1, frequencies = 4 * longest;
-  SymmetricTaps out{.tap = std::vector<double>(longest + 1, 0.0)};
+  WienerFilter out;
+  out.kernel.taps.assign(2 * longest + 1, 0.0);
+  double* middle = out.kernel.taps.data() + longest;
   for (std::size_t i = 0; i < frequencies; ++i) {
     const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(frequencies);
     if (share > stop) break;
@@ -100,28 +88,10 @@ SymmetricTaps wiener_taps(const std::vector<double>& autocovariance, double nois
                std::cos(angle * static_cast<double>(lag));
     const double gain = std::max(0.0, 1.0 - noise / power) / static_cast<double>(frequencies);
     out.mean_gain += gain;
-    for (std::size_t lag = 0; lag <= longest; ++lag) out.tap[lag] += gain * std::cos(angle * static_cast<double>(lag));
+    for (std::size_t lag = 0; lag <= longest; ++lag) middle[lag] += gain * std::cos(angle * static_cast<double>(lag));
   }
+  for (std::size_t lag = 1; lag <= longest; ++lag) *(middle - lag) = middle[lag];
   return out;
-}
-
-/// A stretch less its mean through the filter, beyond its ends turned about their points, so that the slope goes on.
-void filter_stretch(const std::vector<double>& x, double mean, std::pair<std::size_t, std::size_t> stretch,
-                    const std::vector<double>& tap, std::vector<double>& out) {
-  const std::size_t n = stretch.second - stretch.first, reach = tap.size() - 1;
-  const double* first = x.data() + stretch.first;
-  std::vector<double> padded(n + 2 * reach);
-  for (std::size_t k = 0; k < n; ++k) padded[reach + k] = first[k] - mean;
-  for (std::size_t k = 1; k <= reach; ++k) {
-    padded[reach - k] = 2.0 * first[0] - first[k] - mean;
-    padded[reach + n - 1 + k] = 2.0 * first[n - 1] - first[n - 1 - k] - mean;
-  }
-  for (std::size_t k = 0; k < n; ++k) {
-    const double* middle = padded.data() + reach + k;
-    double sum = tap[0] * middle[0];
-    for (std::size_t lag = 1; lag <= reach; ++lag) sum += tap[lag] * (middle[lag] + *(middle - lag));
-    out[stretch.first + k] = mean + sum;
-  }
 }
 
 }  // namespace
@@ -129,17 +99,23 @@ void filter_stretch(const std::vector<double>& x, double mean, std::pair<std::si
 BandLimited denoised(const std::vector<double>& recorded, double rate_Hz, double least_noise) {
   BandLimited out = band_limited(recorded, rate_Hz, least_noise);
   const auto longest = static_cast<std::size_t>(std::lround(kLongestLag_s * rate_Hz));
-  const auto stretches = whole_stretches(recorded, 2 * longest + 1);
+  auto stretches = finite_stretches(recorded);
+  std::erase_if(stretches, [&](const auto& s) { return s.second - s.first <= 2 * longest; });
   if (!(out.noise > 0.0) || stretches.empty()) return out;
   double mean = 0.0, samples = 0.0;
   for (const auto& [begin, end] : stretches)
     for (std::size_t k = begin; k < end; ++k) mean += recorded[k], samples += 1.0;
   mean /= samples;
-  const SymmetricTaps filter = wiener_taps(autocovariances(recorded, mean, stretches, longest), out.noise,
-                                           2.0 * kMiddle * out.band_Hz / rate_Hz);
-  const std::vector<double> limited = out.value;
-  for (const auto& stretch : stretches) filter_stretch(limited, mean, stretch, filter.tap, out.value);
-  out.noise_share = filter.mean_gain;
+  const WienerFilter wiener = wiener_filter(autocovariances(recorded, mean, stretches, longest), out.noise,
+                                            2.0 * kMiddle * out.band_Hz / rate_Hz);
+  std::vector<double> limited = out.value;
+  for (double& v : limited) v -= mean;
+  for (const auto& [begin, end] : stretches) {
+    const std::span<double> there = std::span(out.value).subspan(begin, end - begin);
+    filter(std::span(limited).subspan(begin, end - begin), wiener.kernel, there);
+    for (double& v : there) v += mean;
+  }
+  out.noise_share = wiener.mean_gain;
   return out;
 }
 

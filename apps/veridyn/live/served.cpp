@@ -16,6 +16,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// A run that stood still for so long may still be one to stop, and is asked to for as long.
+constexpr std::chrono::duration<double> kLately(30.0);
+
 /// The newest `run_TIME.vlr` of a folder, by its name; empty where there is none.
 fs::path newest_recording(const fs::path& folder) {
   fs::path newest;
@@ -102,8 +105,8 @@ std::vector<live::ShownRun> Served::runs() {
   std::vector<live::ShownRun> all;
   for (Slot& s : slots_) {
     all.push_back(s.run->shown());
-    constexpr std::chrono::seconds kPatience(2), kGivesUp(30);
-    if (s.run->state() == live::RigState::kStopped || (s.asked && Clock::now() - *s.asked > kGivesUp)) s.asked.reset();
+    constexpr std::chrono::seconds kPatience(2);
+    if (s.run->state() == live::RigState::kStopped || (s.asked && Clock::now() - *s.asked > kLately)) s.asked.reset();
     if (!s.asked) continue;
     // A run on a busy machine loses datagrams.
     static_cast<void>(ask_to_stop(s));
@@ -129,9 +132,7 @@ std::string Served::platform(std::size_t run) const {
 }
 
 bool Served::stop(std::size_t run) {
-  // A run that stands still for a while is one to stop, not one to leave alone.
-  constexpr double kLately = 30.0;  // [s]
-  if (run >= slots_.size() || !slots_[run].run->grows(kLately)) return false;
+  if (run >= slots_.size() || !slots_[run].run->grows(kLately.count())) return false;
   slots_[run].asked = Clock::now();
   return ask_to_stop(slots_[run]);
 }
