@@ -25,7 +25,7 @@ demo: build ## a complete run on a built-in aircraft; report in out/demo
 # So many tests that wait (tests/waiting_tests.txt) run next to JOBS tests that compute.
 WAITING ?= 2
 # Labels of what does not run in `make test`.
-LATER := soak|long|campaign
+LATER := soak|long|campaign|sanitized
 
 test: setup format-check ## build and run the test suite
 	$(build_with_tests)
@@ -75,8 +75,6 @@ tidy: setup ## clang-tidy on every module; TIDY="veridyn/io" for one, TIDY="$(to
 	cmake --preset test --log-level=WARNING
 	tools/tidy.sh $(TESTED) $(JOBS) $(TIDY)
 
-# What reads bytes of strangers: whole modules, and folders of the others with test binaries of their own.
-READERS := core io recording camera live osim tyre road
 ASAN_MODULES ?= core numerics estimation io camera recording aircraft vehicle tyre road muscle osim cueing live report reproduction apps
 # One full run of each domain.
 ASAN_RUNS := example_several_flights|example_vehicle_identify_sweep|example_muscle_emg|example_cueing_knobs
@@ -86,10 +84,10 @@ asan: setup ## tests of every module under the address and undefined-behaviour s
 	cmake --build build/asan -j $(JOBS) --target $(ASAN_MODULES:%=veridyn_%_tests)
 	$(call run_tests,build/asan) -LE '$(LATER)' -L '^($(subst $(space),|,$(ASAN_MODULES)))$$'
 
-asan-readers: setup ## the same for the tests of what reads files and packets of others
-	cmake --preset asan --log-level=WARNING
-	cmake --build build/asan -j $(JOBS) --target $(READERS:%=veridyn_%_tests)
-	$(call run_tests,build/asan) -LE '$(LATER)' -L '^($(subst $(space),|,$(READERS)))$$'
+asan-readers: setup ## tests of what reads files and packets of others, these readers compiled with the sanitizers
+	cmake --preset test --log-level=WARNING
+	cmake --build $(TESTED) -j $(JOBS) --target sanitized_tests
+	$(call run_tests,$(TESTED)) -L '^sanitized$$'
 
 asan-runs: setup ## a full run of each domain under these sanitizers
 	cmake --preset asan --log-level=WARNING
@@ -128,9 +126,9 @@ bench-peers: build ## times of these programs and ours, in one run; build/peers/
 	tools/peers.sh python bench/peers/bench_peers.py build/peers/bench.json
 
 fuzz: setup ## each reader under libFuzzer for SECONDS_EACH (60)
-	cmake --preset asan --log-level=WARNING
-	cmake --build build/asan -j $(JOBS) --target fuzz
-	JOBS=$(JOBS) fuzz/run.sh $(or $(SECONDS_EACH),60) build/asan
+	cmake --preset test --log-level=WARNING
+	cmake --build $(TESTED) -j $(JOBS) --target fuzz
+	JOBS=$(JOBS) fuzz/run.sh $(or $(SECONDS_EACH),60) $(TESTED)
 
 soak: setup ## long-running campaigns (label soak), coverage of intervals
 	cmake --preset release -DVERIDYN_TESTS=ON --log-level=WARNING
@@ -144,6 +142,7 @@ nightly: setup ## all that is too long for .ci/run: every test, module and check
 	$(MAKE) long
 	$(MAKE) campaigns
 	$(MAKE) tidy
+	$(MAKE) asan-readers
 	$(MAKE) asan
 	$(MAKE) asan-runs
 	$(MAKE) tsan

@@ -25,9 +25,9 @@ find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(fmt REQUIRED)
 find_package(Threads REQUIRED)
 
-# What the address sanitizer sees as well: a null pointer that is used, an object that is too small. And addresses that are no
-# multiple of what is read there, but in modules that read bytes of others (VERIDYN_READER). A quarter of the time to compile.
-set(not_sanitized "-fno-sanitize=null,object-size$<$<NOT:$<BOOL:$<TARGET_PROPERTY:VERIDYN_READER>>>:,alignment>")
+# Without what the address sanitizer sees as well: a null pointer that is used, an object that is too small. And, in the whole
+# library, addresses that are no multiple of what is read there. A quarter of the time to compile.
+set(sanitizers -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
 
 add_library(veridyn_build INTERFACE)
 target_compile_features(veridyn_build INTERFACE cxx_std_20)
@@ -41,7 +41,7 @@ target_compile_options(
             # Sizes of the standard library are unsigned, Eigen's indices are not; casting one to the other hid what a line computes.
             $<$<CXX_COMPILER_ID:Clang>:-Wno-sign-conversion>
             $<$<BOOL:${VERIDYN_WERROR}>:-Werror>
-            $<$<BOOL:${VERIDYN_SANITIZE}>:-fsanitize=address,undefined;${not_sanitized};-fno-sanitize-recover=all;-fno-omit-frame-pointer>
+            $<$<BOOL:${VERIDYN_SANITIZE}>:${sanitizers};-fno-sanitize=null,object-size,alignment>
             $<$<BOOL:${VERIDYN_SANITIZE_THREAD}>:-fsanitize=thread;-fno-omit-frame-pointer>)
 target_link_options(veridyn_build INTERFACE $<$<BOOL:${VERIDYN_SANITIZE}>:-fsanitize=address,undefined>
                     $<$<BOOL:${VERIDYN_SANITIZE_THREAD}>:-fsanitize=thread>)
@@ -62,11 +62,20 @@ function(veridyn_precompiled target)
   target_link_libraries(${target} PRIVATE ${ARG_LIBRARIES} Eigen3::Eigen fmt::fmt)
   target_precompile_headers(${target} PRIVATE ${ARG_HEADERS})
 endfunction()
-veridyn_precompiled(
-  veridyn_library_headers POSITION_INDEPENDENT
-  LIBRARIES veridyn_build
-  HEADERS <fmt/format.h> <fmt/ranges.h> <Eigen/Dense> <algorithm> <chrono> <complex> <filesystem> <functional> <map> <memory> <optional> <random>
-          <ranges> <span> <sstream> <string> <variant> <vector>)
+set(library_headers <fmt/format.h> <fmt/ranges.h> <Eigen/Dense> <algorithm> <chrono> <complex> <filesystem> <functional> <map> <memory> <optional>
+                    <random> <ranges> <span> <sstream> <string> <variant> <vector>)
+veridyn_precompiled(veridyn_library_headers POSITION_INDEPENDENT LIBRARIES veridyn_build HEADERS ${library_headers})
+
+# What reads bytes of strangers, compiled once more with the sanitizers and with the counters that lead libFuzzer
+# (veridyn_sanitized_objects). What these sources use of the rest is the library as it is: sanitizing all of it for the sake of its readers
+# took four times as long. Objects of both kinds share the globals of headers, hence none of them has guarded ends; `asan` has them.
+add_library(veridyn_sanitizers INTERFACE)
+target_compile_options(veridyn_sanitizers INTERFACE -O1 -g1 ${sanitizers} -fno-sanitize=null,object-size -fsanitize=fuzzer-no-link "SHELL:-mllvm -asan-globals=0")
+target_link_options(veridyn_sanitizers INTERFACE -fsanitize=address,undefined)
+if(VERIDYN_SANITIZED_READERS)
+  veridyn_precompiled(veridyn_sanitized_headers POSITION_INDEPENDENT LIBRARIES veridyn_build veridyn_sanitizers HEADERS ${library_headers})
+  set_target_properties(veridyn_sanitized_headers PROPERTIES EXCLUDE_FROM_ALL ON)
+endif()
 
 # veridyn_optimise(a.cpp ...)
 # Sources whose loops over small matrices have to be unrolled: -O3. The check
@@ -135,11 +144,27 @@ function(veridyn_public_headers out)
   set(${out} ${public} PARENT_SCOPE)
 endfunction()
 
-# veridyn_module(NAME [DEPENDS Veridyn::core ...] [PRIVATE lib ...] [SOURCES generated.cpp ...] [WITHOUT a.cpp ...])
+# veridyn_sanitized_objects(TARGET LIBRARIES lib ... SOURCES a.cpp ...)
+# The objects of these sources of a library as the sanitizers want them: TARGET_sanitized. Linked before the library they take the place of
+# its own, which hold the same sources (veridyn_compile_together), so that the linker finds nothing there that is still missing.
+function(veridyn_sanitized_objects target)
+  cmake_parse_arguments(ARG "" "" "LIBRARIES;SOURCES" ${ARGN})
+  set(objects ${target}_sanitized)
+  add_library(${objects} OBJECT EXCLUDE_FROM_ALL ${ARG_SOURCES})
+  set_target_properties(${objects} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_link_libraries(${objects} PRIVATE ${ARG_LIBRARIES} veridyn_build veridyn_sanitizers)
+  target_compile_definitions(${objects} PRIVATE $<TARGET_PROPERTY:${target},COMPILE_DEFINITIONS>)
+  target_include_directories(${objects} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_precompile_headers(${objects} REUSE_FROM veridyn_sanitized_headers)
+  veridyn_compile_together(${objects})
+endfunction()
+
+# veridyn_module(NAME [DEPENDS Veridyn::core ...] [PRIVATE lib ...] [SOURCES generated.cpp ...] [WITHOUT a.cpp ...] [READERS folder ...])
 # A module: static library veridyn_NAME, alias Veridyn::NAME, of all sources in its folder and the folders below. Its face
 # veridyn/NAME.hpp and those of its headers that are public are installed with their folders (veridyn_public_headers).
+# READERS: which of its folders read bytes of strangers, `.` for all.
 function(veridyn_module name)
-  cmake_parse_arguments(ARG "" "" "DEPENDS;PRIVATE;SOURCES;WITHOUT" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "DEPENDS;PRIVATE;SOURCES;WITHOUT;READERS" ${ARGN})
   set(target veridyn_${name})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp)
   set(headers ${VERIDYN_PUBLIC_HEADERS})
@@ -156,6 +181,14 @@ function(veridyn_module name)
     target_precompile_headers(${target} REUSE_FROM veridyn_library_headers)
   endif()
   veridyn_compile_together(${target})
+  if(VERIDYN_SANITIZED_READERS AND ARG_READERS)
+    set(readers ${sources} ${ARG_SOURCES})
+    if(NOT ARG_READERS STREQUAL ".")
+      list(JOIN ARG_READERS "|" folders)
+      list(FILTER readers INCLUDE REGEX "^(${folders})/")
+    endif()
+    veridyn_sanitized_objects(${target} LIBRARIES ${ARG_DEPENDS} ${ARG_PRIVATE} SOURCES ${readers})
+  endif()
   install(
     TARGETS ${target}
     EXPORT VeridynTargets
@@ -194,6 +227,33 @@ function(veridyn_module_tests name)
   veridyn_test_binary(${name} DEPENDS $<TARGET_NAME_IF_EXISTS:Veridyn::${name}> ${ARG_DEPENDS} SOURCES ${sources})
 endfunction()
 
+# veridyn_read_test_lists()
+# Sets `long`, `campaign`, `waiting` and `lone` to the filters of tests/LIST_tests.txt as GoogleTest has them, and LIST_names as CMake.
+macro(veridyn_read_test_lists)
+  foreach(list long campaign waiting lone)
+    set(file ${PROJECT_SOURCE_DIR}/tests/${list}_tests.txt)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+    file(STRINGS ${file} ${list} REGEX "^[^#]")
+    list(JOIN ${list} "|" ${list}_names)
+    list(TRANSFORM ${list} REPLACE "(.+)" "*\\1*")
+    list(JOIN ${list} ":" ${list})
+  endforeach()
+endmacro()
+
+# veridyn_suites(TARGET MODULE LABEL LEFT_OUT)
+# A test of CTest for each suite of this binary, MODULE.Suite (VeridynSuites.cmake), without the cases of the filter LEFT_OUT.
+function(veridyn_suites target module label left_out)
+  set(file ${CMAKE_CURRENT_BINARY_DIR}/${target}_suites.cmake)
+  file(CONFIGURE OUTPUT ${file} @ONLY CONTENT [[
+set(BINARY "@CMAKE_RUNTIME_OUTPUT_DIRECTORY@/@target@")
+set(MODULE "@module@")
+set(LABEL "@label@")
+set(LEFT_OUT "@left_out@")
+include("@PROJECT_SOURCE_DIR@/cmake/VeridynSuites.cmake")
+]])
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${file})
+endfunction()
+
 # veridyn_test_binary(NAME SOURCES ... [DEPENDS ...])
 # veridyn_NAME_tests; each suite of it is a test of CTest, NAME.Suite, under the label NAME (VeridynSuites.cmake). Tests of their
 # own are cases of suites named *Soak*, long-running campaigns under the label `soak`, which `make soak` runs; those that
@@ -208,14 +268,7 @@ function(veridyn_test_binary name)
   target_link_libraries(${target} PRIVATE ${ARG_DEPENDS} veridyn_test_build veridyn_test_main)
   target_precompile_headers(${target} REUSE_FROM veridyn_test_headers)
   veridyn_compile_together(${target})
-  foreach(list long campaign waiting lone)
-    set(file ${PROJECT_SOURCE_DIR}/tests/${list}_tests.txt)
-    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
-    file(STRINGS ${file} ${list} REGEX "^[^#]")
-    list(JOIN ${list} "|" ${list}_names)
-    list(TRANSFORM ${list} REPLACE "(.+)" "*\\1*")
-    list(JOIN ${list} ":" ${list})
-  endforeach()
+  veridyn_read_test_lists()
   set(alone ${waiting}:${lone})
   set(later *Soak*:${long}:${campaign})
   gtest_discover_tests(${target} TEST_FILTER ${alone}-${later} TEST_LIST ${target}_alone DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${name} TIMEOUT 600)
@@ -224,7 +277,6 @@ function(veridyn_test_binary name)
   gtest_discover_tests(${target} TEST_FILTER *Soak* DISCOVERY_TIMEOUT 60 PROPERTIES LABELS soak ENVIRONMENT VERIDYN_SOAK=1 TIMEOUT 7200)
 
   # What CTest reads after the tests of this folder.
-  set(left_out ${later}:${alone})
   set(file ${CMAKE_CURRENT_BINARY_DIR}/${target}_resources.cmake)
   file(CONFIGURE OUTPUT ${file} @ONLY CONTENT [[
 foreach(test IN LISTS @target@_alone @target@_long @target@_campaign)
@@ -236,12 +288,28 @@ foreach(test IN LISTS @target@_alone @target@_long @target@_campaign)
     set_tests_properties(${test} PROPERTIES RESOURCE_GROUPS cores:1)
   endif()
 endforeach()
-set(BINARY "@CMAKE_RUNTIME_OUTPUT_DIRECTORY@/@target@")
-set(MODULE "@name@")
-set(LEFT_OUT "@left_out@")
-include("@PROJECT_SOURCE_DIR@/cmake/VeridynSuites.cmake")
 ]])
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${file})
+  veridyn_suites(${target} ${name} ${name} ${later}:${alone})
+endfunction()
+
+# veridyn_sanitized_tests(NAME MODULE...)
+# veridyn_NAME_tests with the readers of these modules sanitized, as the target veridyn_NAME_sanitized_tests and under the label
+# `sanitized` (`make asan-readers`).
+function(veridyn_sanitized_tests name)
+  if(NOT VERIDYN_SANITIZED_READERS)
+    return()
+  endif()
+  set(target veridyn_${name}_sanitized_tests)
+  set(tests veridyn_${name}_tests)
+  list(TRANSFORM ARGN REPLACE "(.+)" "$<TARGET_OBJECTS:veridyn_\\1_sanitized>" OUTPUT_VARIABLE readers)
+  add_executable(${target} EXCLUDE_FROM_ALL $<TARGET_OBJECTS:${tests}> ${readers})
+  get_target_property(libraries ${tests} LINK_LIBRARIES)
+  target_link_libraries(${target} PRIVATE ${libraries})
+  target_link_options(${target} PRIVATE $<TARGET_PROPERTY:veridyn_sanitizers,INTERFACE_LINK_OPTIONS>)
+  set_property(GLOBAL APPEND PROPERTY VERIDYN_SANITIZED_TESTS ${target})
+  veridyn_read_test_lists()
+  veridyn_suites(${target} sanitized.${name} sanitized *Soak*:${long}:${campaign})
 endfunction()
 
 # veridyn_waiting_tests(TEST...): tests that mostly wait; they take no core of those that `make test` distributes, and start

@@ -1,11 +1,11 @@
 # Read by CTest when it starts, for one test binary: a test for each suite of it, MODULE.Suite, of those cases that are not
-# tests of their own (veridyn_module_tests). One process a suite: starting one for each of the 3500 cases took a third of
+# tests of their own (veridyn_suites). One process a suite: starting one for each of the 3500 cases took a third of
 # the time of all.
-# BINARY, MODULE, LEFT_OUT: the binary, its module, the filter of cases that are left out
+# BINARY, MODULE, LABEL, LEFT_OUT: the binary, its module, the label of its tests, the filter of cases that are left out
 cmake_policy(VERSION 3.25) # CTest sets none
 if(NOT EXISTS "${BINARY}")
   add_test("${MODULE}.NotBuilt" "${BINARY}")
-  set_tests_properties("${MODULE}.NotBuilt" PROPERTIES LABELS "${MODULE}")
+  set_tests_properties("${MODULE}.NotBuilt" PROPERTIES LABELS "${LABEL}")
   return()
 endif()
 execute_process(
@@ -24,7 +24,7 @@ foreach(line IN LISTS lines)
   set(suite ${CMAKE_MATCH_1})
   add_test("${MODULE}.${suite}" "${BINARY}" "--gtest_filter=${suite}.*-${LEFT_OUT}" --gtest_brief=1)
   # 77: some of its cases were skipped, and none failed (tests/support/main.cpp).
-  set_tests_properties("${MODULE}.${suite}" PROPERTIES LABELS "${MODULE}" TIMEOUT 1800 RESOURCE_GROUPS cores:1 SKIP_RETURN_CODE 77
+  set_tests_properties("${MODULE}.${suite}" PROPERTIES LABELS "${LABEL}" TIMEOUT 1800 RESOURCE_GROUPS cores:1 SKIP_RETURN_CODE 77
                                                        ENVIRONMENT "VERIDYN_SKIPPED=77")
   # The longest first, so that nothing is left to wait for at the end (CTest knows how long they take from the second run on).
   if("${MODULE}.${suite}" MATCHES "^apps\.|EveryWashout$")
