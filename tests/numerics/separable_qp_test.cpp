@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 
+#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::numerics {
@@ -54,7 +54,10 @@ TEST(SeparableQp, WithoutBoundsItIsTheWeightedLeastNormSolution) {
   qp.high.setConstant(INFINITY);
   ASSERT_EQ(qp.solve(), QpEnd::kSolved);
   const Eigen::MatrixXd W = qp.weight.cwiseInverse().asDiagonal();
-  const Eigen::VectorXd expected = W * qp.A.transpose() * (qp.A * W * qp.A.transpose()).inverse() * qp.b;
+  const Eigen::MatrixXd weighted = W * qp.A.transpose();
+  const Eigen::MatrixXd squares = qp.A * weighted;
+  const Eigen::VectorXd multipliers = solve_linear(squares, qp.b);
+  const Eigen::VectorXd expected = weighted * multipliers;
   EXPECT_LT((qp.x() - expected).cwiseAbs().maxCoeff(), 1e-12);
 }
 
