@@ -1,7 +1,6 @@
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "tests/vehicle/model/moments.hpp"
+#include "veridyn/numerics/linear_algebra/general_eigen.hpp"
 
 // Frequencies of the four-wheel model's heave, roll, pitch and wheel hop.
 
@@ -64,7 +64,7 @@ TEST(FourWheelModel, HeavesRollsAndPitchesAtTheFrequenciesOfTheQuarterCar) {
   expected.push_back(std::sqrt((p.K_sf + 2.0 * p.K_bf + p.K_tf) / p.unsprung_mass));
   std::sort(expected.begin(), expected.end());
   std::vector<double> found;
-  for (const std::complex<double>& e : vertical_motion(p).eigenvalues()) {
+  for (const std::complex<double>& e : numerics::general_eigenvalues(vertical_motion(p))) {
     EXPECT_NEAR(e.real(), 0.0, 1e-7);
     if (e.imag() > 0.0) found.push_back(e.imag());
   }
@@ -86,7 +86,7 @@ TEST(FourWheelModel, MovesTheWholeMassAndIsNotTiltedInTheSourcesConvention) {
       two_mass_frequencies(p.I_x, 4.0 * p.unsprung_mass * y * y, 4.0 * p.K_sf * y * y, 4.0 * p.K_tf * y * y, 0.0);
   for (const double expected : {heave[0], heave[1], roll[0], roll[1]}) {
     double nearest = 1e9;
-    for (const std::complex<double>& e : vertical_motion(p, options).eigenvalues()) {
+    for (const std::complex<double>& e : numerics::general_eigenvalues(vertical_motion(p, options))) {
       nearest = std::min(nearest, std::abs(e - std::complex<double>(0.0, expected)));
     }
     EXPECT_LT(nearest, 1e-6);
