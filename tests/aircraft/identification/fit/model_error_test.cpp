@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::aircraft {
@@ -28,7 +29,9 @@ TEST(ModelError, IsThePowerOfWhatIsNotModelledInEachParameter) {
   const estimation::RegressionData data = two_regressors(2000);
   const Eigen::MatrixXd root = model_error(data, 0.3);
   const double power = 0.3 * (data.regressand.array() - data.regressand.mean()).square().sum();
-  const Eigen::MatrixXd expected = power / 3.0 * (data.regressors.transpose() * data.regressors).inverse();
+  const Eigen::MatrixXd squares = data.regressors.transpose() * data.regressors;
+  const Eigen::MatrixXd expected =
+      numerics::solve_linear(squares, Eigen::MatrixXd(power / 3.0 * Eigen::MatrixXd::Identity(3, 3)));
   EXPECT_LT((root * root.transpose() - expected).norm(), 1e-9 * expected.norm());
   // What the regressors explain with such errors is as much as is left over.
   EXPECT_NEAR((data.regressors * root).squaredNorm(), power, 1e-9 * power);
