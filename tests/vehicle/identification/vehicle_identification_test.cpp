@@ -134,20 +134,6 @@ TEST(VehicleIdentification, WidensAPriorThatTheDriveContradicts) {
             clean.checks.end());
 }
 
-// At one speed a steering that reads too much looks much like softer tyres: 6 % here, twice the standard deviation of
-// its prior.
-TEST(VehicleIdentification, DoesNotTakeAWrongSteeringForSofterTyres) {
-  const VehicleParameters<double> p = family_car();
-  const WanderingSteer steer(5, 0.02);
-  const VehicleTrajectory drive = drive_bicycle<BicycleModel<double, LinearTyre<double>>>(
-      [&](double) { return testing::linear_bicycle(p); }, 60.0, steer, [](double) { return 20.0; });
-  DriveSensorSet sensors = reference_drive_sensors();
-  sensors[DriveSensorKind::kSteer].scale = 0.06;
-  const VehicleIdentification id = identify(drive, sensors, 1);
-  for (const auto& [name, truth] : {std::pair{"C_f", p.C_f}, {"C_r", p.C_r}, {"I_z", p.I_z}})
-    expect_held(id, name, truth);
-}
-
 TEST(VehicleIdentification, SaysThatStraightDrivingExcitesNothing) {
   const VehicleParameters<double> p = family_car();
   const VehicleIdentification id = identify(lively_drive(p, 1, 1e-4), reference_drive_sensors(), 1);

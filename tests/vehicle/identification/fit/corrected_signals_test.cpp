@@ -27,9 +27,7 @@ TEST(CorrectedSignals, AreInTheTimeOfTheWheelsAndAtTheAccelerometersPlace) {
   recorded[DriveSignal::kSteer].value = wave(0.025);  // late, so that the wheels answer it early
   recorded[DriveSignal::kYawRate].value = wave(0.0);
   recorded[DriveSignal::kAccelY].value = wave(0.013);
-  for (double& steer : recorded[DriveSignal::kSteer].value) steer *= 1.1;
   Eigen::VectorXd theta = Eigen::VectorXd::Zero(kDriveUnknowns);
-  theta(static_cast<Eigen::Index>(DriveUnknown::kSteerScale)) = 0.1;
   theta(static_cast<Eigen::Index>(DriveUnknown::kSteerDelay)) = -0.025;
   theta(static_cast<Eigen::Index>(DriveUnknown::kAccelYDelay)) = 0.013;
   theta(static_cast<Eigen::Index>(DriveUnknown::kAccelPlace)) = 0.4;

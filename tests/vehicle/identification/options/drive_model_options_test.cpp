@@ -142,8 +142,8 @@ TEST(DriveModelOptions, HoldTheUnknownsThatASimplerStructureDoesNotHave) {
   EXPECT_TRUE(roll.free[DriveUnknown::kRollGradient]);
   // What the study frees stays so: it is no structure's.
   DriveModelOptions with_scale;
-  with_scale.free[DriveUnknown::kAccelYScale] = true;
-  EXPECT_TRUE(with_structure(with_scale, DriveStructure::kRoll).free[DriveUnknown::kAccelYScale]);
+  with_scale.free[DriveUnknown::kSteerScale] = true;
+  EXPECT_TRUE(with_structure(with_scale, DriveStructure::kRoll).free[DriveUnknown::kSteerScale]);
 }
 
 /// Of the budget: what no structure decides on.

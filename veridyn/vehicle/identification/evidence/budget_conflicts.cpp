@@ -37,7 +37,7 @@ std::vector<BudgetConflict> budget_conflicts(const DriveModelOptions& model,
     if (channels_of(u).empty() || !model.free[u] || !std::isfinite(model.prior[u])) continue;
     const double left = model.prior[u] * model.prior[u] - fit.covariance(i, i);
     const double off = fit.theta(i) - model.start[u];
-    if (left > 0.0 && off * off > 4.0 * left)
+    if (left > 0.0 && off * off > estimation::kBeyondChance * estimation::kBeyondChance * left)
       conflicts.push_back({.unknown = u,
                            .value = fit.theta(i),
                            .sigma = std::sqrt(fit.covariance(i, i)),

@@ -6,9 +6,7 @@
 
 #include "veridyn/core/index.hpp"
 #include "veridyn/estimation/judgement/check.hpp"
-#include "veridyn/numerics/linear_algebra/cholesky.hpp"
 #include "veridyn/vehicle/identification/fit/drive_parametric_model.hpp"
-#include "veridyn/vehicle/identification/options/drive_budget.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -23,35 +21,6 @@ PartsAgreement compared(const Eigen::VectorXd& here, const Eigen::VectorXd& ther
   for (Eigen::Index i = 0; i < here.size(); ++i)
     parts.largest_difference = std::max(parts.largest_difference, std::abs(there(i) - here(i)) / std::abs(here(i)));
   return parts;
-}
-
-struct PartOfDrive {
-  Eigen::VectorXd theta;
-  Eigen::MatrixXd covariance;
-};
-
-/// Errors of the budget are the same in both parts. Where one part says s +- P of them, the other is compared at s: the
-/// vehicle's `values` v of a part move with them by J = S_vs S_ss^-1, and what is left of the difference has the
-/// variance of v in each part where s is known, and (J_here - J_there) P (J_here - J_there)'.
-PartsAgreement compared_with_the_same_sensors(const PartOfDrive& here, const PartOfDrive& there,
-                                              const std::vector<Eigen::Index>& values) {
-  std::vector<Eigen::Index> sensors;
-  for (const DrivePrior& budget : kDriveBudget) {
-    const auto i = static_cast<Eigen::Index>(budget.unknown);
-    if (here.covariance(i, i) > 0.0 && there.covariance(i, i) > 0.0) sensors.push_back(i);
-  }
-  if (sensors.empty())
-    return compared(here.theta(values), there.theta(values),
-                    here.covariance(values, values) + there.covariance(values, values));
-  const auto slope = [&](const PartOfDrive& part) -> Eigen::MatrixXd {
-    const Eigen::MatrixXd own = part.covariance(sensors, sensors), across = part.covariance(sensors, values);
-    return numerics::solve_symmetric(own, across).transpose();
-  };
-  const Eigen::MatrixXd J_here = slope(here), J_there = slope(there), J = J_here - J_there;
-  const Eigen::MatrixXd known = here.covariance(values, values) - J_here * here.covariance(sensors, values) +
-                                there.covariance(values, values) - J_there * there.covariance(sensors, values);
-  return compared(here.theta(values), there.theta(values) + J_there * (here.theta(sensors) - there.theta(sensors)),
-                  known + J * here.covariance(sensors, sensors) * J.transpose());
 }
 
 std::optional<PartsAgreement> by_output_error(const VehicleProblem& problem, const OutputErrorResult& here,
@@ -90,8 +59,8 @@ std::optional<PartsAgreement> by_output_error(const VehicleProblem& problem, con
     if (determined(here.raw) && determined(there)) both.push_back(i);
   }
   if (both.empty()) return std::nullopt;
-  return compared_with_the_same_sensors({here.raw.theta, here.raw.total_covariance()},
-                                        {there.theta, there.total_covariance()}, both);
+  const Eigen::MatrixXd covariance = here.raw.total_covariance() + there.total_covariance();
+  return compared(here.raw.theta(both), there.theta(both), covariance(both, both));
 }
 
 }  // namespace

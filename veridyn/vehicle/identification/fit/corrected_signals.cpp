@@ -38,7 +38,6 @@ DriveSignals corrected_signals(DriveSignals signals, const Eigen::VectorXd& thet
   const double step = signals.grid.step;
   // The wheels answer later than the recorded steering: they were where it was before.
   shift(signals[DriveSignal::kSteer].value, -found(DriveUnknown::kSteerDelay), step);
-  for (double& steer : signals[DriveSignal::kSteer].value) steer /= 1.0 + found(DriveUnknown::kSteerScale);
   shift(signals[DriveSignal::kYawRate].value, found(DriveUnknown::kYawRateDelay), step);
   shift(signals[DriveSignal::kAccelY].value, found(DriveUnknown::kAccelYDelay), step);
   signals.accel_position[0] += found(DriveUnknown::kAccelPlace);

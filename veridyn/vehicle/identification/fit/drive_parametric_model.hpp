@@ -24,8 +24,8 @@ inline constexpr std::string_view kSegmentBank = "bank";
 /// Below it the derivative of the recorded speed moves loads: bodies pitch as slowly.
 inline constexpr double kPedalBand_Hz = 2.0;
 
-/// Unknowns whose derivatives one simulation gives: a bicycle has eleven, and two of its beginning.
-inline constexpr int kDriveStride = 13;
+/// Unknowns whose derivatives one simulation gives: a bicycle has ten, and two of its beginning.
+inline constexpr int kDriveStride = 12;
 
 /// The drive as a parametric model for output error: a `RollingBicycle` (exact geometry) driven by measured steering
 /// and speed, with the states of each segment's beginning as further unknowns: lateral velocity and yaw rate, and of
@@ -52,8 +52,8 @@ inline constexpr int kDriveStride = 13;
 /// `DriveModelOptions::smoothing_Hz` inputs and outputs are smoothed alike instead: a linear time-invariant system
 /// commutes with that exactly, the bicycle to second order in the kernel's length.
 ///
-/// What the model leaves out shows as autocorrelation of the residual: load transfer. Compliance of the steering is in
-/// C_f. Diverged: |v| above 2 u, |r| above 50 rad/s.
+/// What the model leaves out shows as autocorrelation of the residual: load transfer, compliance of the steering
+/// (`steer_scale`, indistinguishable from C_f). Diverged: |v| above 2 u, |r| above 50 rad/s.
 class DriveParametricModel
     : public estimation::AutodiffModel<DriveParametricModel, kDriveStride, estimation::OpenLoopModel> {
  public:

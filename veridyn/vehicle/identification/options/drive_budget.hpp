@@ -20,8 +20,6 @@ struct DrivePrior {
 /// unknown of every output error beside the vehicle's, with such a prior. What the drive says of it corrects the
 /// vehicle's parameters, what it leaves open is in their intervals. Those of roll count where the body rolls.
 inline constexpr std::array kDriveBudget{
-    DrivePrior{DriveUnknown::kSteerScale, 0.03, "measured over true steering, less 1",
-               "ours: ratios of steering gears by data sheet or protractor, which differ between on-centre and lock"},
     DrivePrior{DriveUnknown::kSteerDelay, 0.02, "how late the recorded steering is answered",
                "ours: messages of a CAN bus at 50 to 100 Hz and filters of column sensors are 10 to 20 ms old each"},
     DrivePrior{DriveUnknown::kAccelYDelay, 0.01, "how late accel_y is recorded against yaw_rate",

@@ -166,6 +166,7 @@ DriveModelOptions::DriveModelOptions() {
   prior[DriveUnknown::kSteerBias] = kDegree;
   prior[DriveUnknown::kYawRateBias] = kDegree;
   prior[DriveUnknown::kAccelYBias] = 0.5;
+  prior[DriveUnknown::kSteerScale] = 0.1;
   prior[DriveUnknown::kAccelYScale] = 0.03;
   for (const DriveUnknown u :
        {DriveUnknown::kSteerDelay, DriveUnknown::kYawRateDelay, DriveUnknown::kAccelYDelay, DriveUnknown::kCourseDelay})
@@ -278,7 +279,7 @@ const KeyTable<DriveModelOptions>& DriveModelOptions::keys() {
                  })
           .other(
               {"prior", "SI", "by the names of unknowns, or `\"none\"`",
-               "steer_bias 1 deg, yaw_rate_bias 1 deg/s, accel_y_bias 0.5 m/s^2, accel_y_scale 0.03, "
+               "steer_bias 1 deg, yaw_rate_bias 1 deg/s, accel_y_bias 0.5 m/s^2, steer_scale 0.1, accel_y_scale 0.03, "
                "sideslip_bias 1 deg, yaw_rate_delay and course_delay 0.1 s, C 0.2, E 0.5, what `veridyn priors` "
                "lists; others by the geometry",
                "standard deviation of what is known beforehand; of what `veridyn priors` lists 0: known exactly", true},
