@@ -6,8 +6,9 @@ extern "C" [[gnu::weak]] void __tsan_init();  // NOLINT
 
 namespace veridyn::test {
 
-/// Whether this runs under the sanitizers: what they look at takes some twenty times as long, and memory says in a tenth of the steps
-/// what it says in all. Tests of readers are the same objects with and without them (veridyn_sanitized_tests).
+/// Whether this runs under the sanitizers: what they look at takes some twenty times as long, and memory says in a
+/// tenth of the steps what it says in all. Tests of readers are the same objects with and without them
+/// (veridyn_sanitized_tests).
 inline const bool kSanitized = __asan_init != nullptr || __tsan_init != nullptr;
 
 }  // namespace veridyn::test
