@@ -75,7 +75,7 @@ target_compile_options(veridyn_sanitizers INTERFACE -O1 -g1 ${sanitizers} -fsani
 target_link_options(veridyn_sanitizers INTERFACE -fsanitize=address,undefined)
 if(VERIDYN_SANITIZED_READERS)
   veridyn_precompiled(veridyn_sanitized_headers POSITION_INDEPENDENT LIBRARIES veridyn_build veridyn_sanitizers HEADERS ${library_headers})
-  set_target_properties(veridyn_sanitized_headers PROPERTIES EXCLUDE_FROM_ALL ON)
+  set_target_properties(veridyn_sanitized_headers PROPERTIES EXCLUDE_FROM_ALL ON EXPORT_COMPILE_COMMANDS OFF)
 endif()
 
 # veridyn_optimise(a.cpp ...)
@@ -152,7 +152,8 @@ function(veridyn_sanitized_objects target)
   cmake_parse_arguments(ARG "" "" "LIBRARIES;SOURCES" ${ARGN})
   set(objects ${target}_sanitized)
   add_library(${objects} OBJECT EXCLUDE_FROM_ALL ${ARG_SOURCES})
-  set_target_properties(${objects} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  # clang-tidy looks at each source once, as the library compiles it.
+  set_target_properties(${objects} PROPERTIES POSITION_INDEPENDENT_CODE ON EXPORT_COMPILE_COMMANDS OFF)
   target_link_libraries(${objects} PRIVATE ${ARG_LIBRARIES} veridyn_build veridyn_sanitizers)
   target_compile_definitions(${objects} PRIVATE $<TARGET_PROPERTY:${target},COMPILE_DEFINITIONS>)
   target_include_directories(${objects} PRIVATE ${PROJECT_SOURCE_DIR})

@@ -8,7 +8,7 @@ jobs=$2
 shift 2
 export build analyzer='clang-analyzer-core.*,clang-analyzer-cplusplus.*,clang-analyzer-deadcode.*'
 # The precompiled headers are those of the same clang.
-sed -nE 's|^ *"output": "(.*cmake_pch\.hxx\.pch)".*|\1|p' "$build/compile_commands.json" | xargs ninja -C "$build" -j "$jobs" >/dev/null
+sed -nE 's|^ *"command": .* -o ([^ ]*cmake_pch\.hxx\.pch) .*|\1|p' "$build/compile_commands.json" | xargs -r ninja -C "$build" -j "$jobs" >/dev/null
 
 tidy() { # UNIT
   local checks=-bugprone-suspicious-include # sources compiled together include each other
