@@ -25,6 +25,21 @@ struct Noise {
 };
 constexpr Noise kReference{.force = 0.05, .rate = 0.35 * kDegree, .angle = 0.75 * kDegree, .velocity = 0.05};
 
+/// Specific force, rates and angles at the stamps `fast`, velocities at `slow`.
+Recording recording_of(const std::vector<double>& fast, const std::vector<double>& slow,
+                       const std::array<std::vector<double>, 12>& v) {
+  Recording recording;
+  recording.frame = Frame::kFrd;
+  const TimeBase of_imu = make_time_base(fast), of_fixes = make_time_base(slow);
+  constexpr std::array<const char*, 12> kNames{"accel_x", "accel_y", "accel_z", "gyro_x",    "gyro_y",   "gyro_z",
+                                               "roll",    "pitch",   "yaw",     "vel_north", "vel_east", "vel_down"};
+  for (std::size_t k = 0; k < kNames.size(); ++k) {
+    const char* unit = k < 3 ? "m/s^2" : k < 6 ? "rad/s" : k < 9 ? "rad" : "m/s";
+    recording.add(make_channel(kNames[k], unit, k < 9 ? of_imu : of_fixes, v[k]));
+  }
+  return recording;
+}
+
 /// A body that sways about all axes, by closed forms: attitude and velocity are sums of sines, rates and specific force
 /// their derivatives. No model of a vehicle and no integration is behind it.
 /// @param heave  angular frequency of its vertical motion [rad/s]
@@ -60,16 +75,7 @@ Recording swaying_body(std::uint64_t seed, const Noise& noise, double heave = 0.
       v[9 + k].push_back(kSpeed[k] * std::sin(speed_rate[k] * t + 2.0 * static_cast<double>(k)) +
                          noise.velocity * random.normal());
   }
-  Recording recording;
-  recording.frame = Frame::kFrd;
-  const TimeBase at_100_Hz = make_time_base(fast), at_10_Hz = make_time_base(slow);
-  constexpr std::array<const char*, 12> kNames{"accel_x", "accel_y", "accel_z", "gyro_x",    "gyro_y",   "gyro_z",
-                                               "roll",    "pitch",   "yaw",     "vel_north", "vel_east", "vel_down"};
-  for (std::size_t k = 0; k < kNames.size(); ++k) {
-    const char* unit = k < 3 ? "m/s^2" : k < 6 ? "rad/s" : k < 9 ? "rad" : "m/s";
-    recording.add(make_channel(kNames[k], unit, k < 9 ? at_100_Hz : at_10_Hz, v[k]));
-  }
-  return recording;
+  return recording_of(fast, slow, v);
 }
 
 void change(Recording& recording, const char* channel, double factor, double offset = 0.0) {
@@ -119,6 +125,40 @@ TEST(InertialConsistency, AWrongNorthIsNoTurnedAccelerometer) {
   EXPECT_LT((c.accelerometer->gain - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff(), 0.02);
   for (const estimation::Evidence& row : inertial_evidence(c))
     if (row.about == "accelerometer") EXPECT_TRUE(row.passed()) << says(row);
+}
+
+/// Level circles of a body that speeds up and slows down where its nose points east and is pushed sideways and up and
+/// down everywhere, without noise.
+/// @param deviation  of the compass: what it reads too much where the nose points east, and too little where west [rad]
+Recording circling_body(double deviation) {
+  constexpr double kStep = 0.01, kTurnRate = 0.25;
+  const auto acceleration = [&](double t) {
+    return numerics::Vector3<double>(3.0 * std::sin(1.3 * t) * std::max(0.0, std::sin(kTurnRate * t)),
+                                     2.0 + std::sin(0.7 * t), 1.5 * std::cos(0.9 * t));
+  };
+  std::vector<double> stamps;
+  std::array<std::vector<double>, 12> v;
+  numerics::Vector3<double> velocity(8.0, 0.0, 0.0);
+  for (int k = 0; k * kStep < kDuration_s; ++k) {
+    const double t = k * kStep, psi = kTurnRate * t, middle = t + 0.5 * kStep;
+    const numerics::Vector3<double> a = acceleration(t);
+    stamps.push_back(t);
+    const std::array<double, 12> row{
+        a(0),        a(1),        a(2) - kGravity, 0.0, 0.0, kTurnRate, 0.0, 0.0, psi + deviation * std::sin(psi),
+        velocity(0), velocity(1), velocity(2)};
+    for (std::size_t i = 0; i < row.size(); ++i) v[i].push_back(row[i]);
+    velocity += kStep * numerics::R_body_from_ned(0.0, 0.0, kTurnRate * middle).transpose() * acceleration(middle);
+  }
+  return recording_of(stamps, stamps, v);
+}
+
+// Iron on board: all of it laid to the accelerometer, "axis y reads -0.2 x".
+TEST(InertialConsistency, ADeviationOfTheCompassIsNoTurnedAccelerometer) {
+  for (const double deviation : {0.0, 15.0 * kDegree}) {
+    const InertialConsistency c = inertial_consistency(circling_body(deviation), kWhole);
+    ASSERT_TRUE(c.accelerometer);
+    EXPECT_LT((c.accelerometer->gain - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff(), 0.02) << deviation;
+  }
 }
 
 TEST(InertialEvidence, RaisesNoAlarmOverTwoHundredCleanRecordings) {

@@ -29,10 +29,13 @@ Sensor wrong_sensor() {
   return s;
 }
 
+/// Delays, and zero and deviation of the heading.
+using Moves = Eigen::Vector<double, internal::kDelays>;
+
 /// Windows of what such a sensor reads in any attitude against what a noisy reference shows in the fixed frame.
-/// @param rests an axis whose truth is constant @param delays by which the reference's own derivatives move it [s]
+/// @param rests an axis whose truth is constant @param delays by which what goes with them moves it [s, rad]
 Equations equations(const Sensor& sensor, std::uint64_t seed, int windows = kWindows,
-                    std::optional<Eigen::Index> rests = {}, const Eigen::Vector4d& delays = Eigen::Vector4d::Zero()) {
+                    std::optional<Eigen::Index> rests = {}, const Moves& delays = Moves::Zero()) {
   numerics::RandomStream draw(seed, "windows");
   const auto vector = [&] { return Vector3(draw.normal(), draw.normal(), draw.normal()); };
   Equations all(kNoise * kNoise);
@@ -44,7 +47,7 @@ Equations equations(const Sensor& sensor, std::uint64_t seed, int windows = kWin
     truth(2) -= kGravity;
     if (rests) truth(*rests) = 0.0;
     Equations::Delays moves;
-    for (Eigen::Index j = 0; j < 4; ++j) moves.col(j) = 5.0 * vector();
+    for (Eigen::Index j = 0; j < moves.cols(); ++j) moves.col(j) = 5.0 * vector();
     const Vector3 seen = T * truth + moves * delays + kNoise * vector();
     all.add(regressors(T, sensor.gain * truth + sensor.bias), seen, moves);
   }
@@ -78,7 +81,7 @@ TEST(InertialEquations, FindGainAndBiasWithinTheirStandardErrors) {
 
 TEST(InertialEquations, FindDelaysTogetherWithThem) {
   const Sensor sensor = wrong_sensor();
-  const Eigen::Vector4d delays(0.02, -0.05, 0.1, 0.01);
+  const Moves delays(0.02, -0.05, 0.1, 0.01, 0.2, -0.1);
   const std::optional<Solved> found = equations(sensor, 1, kWindows, {}, delays).solve(true);
   ASSERT_TRUE(found.has_value());
   for (Eigen::Index j = 0; j < 3; ++j) {

@@ -163,7 +163,7 @@ struct Explanatory {
 };
 
 /// How much later `effect` answers `cause` when it is a linear function of the cause and of `others`: the lag at which
-/// least squares, corrected for the noise of both (Fuller 1987, sec. 2.2), leaves least, from -max/3 to max.
+/// least squares, corrected for the noise of both (Fuller 1987, sec. 2.2), leaves least, from -max to max.
 /// `delay_s` is positive when the effect is late; `correlation` is the multiple correlation. Taken off as above; never
 /// for a negative delay, an effect before its cause. `sigma_s` is the jackknife's, by tenths of the recording: it needs
 /// no white residual; never less than half a step, between which a cause may jump.

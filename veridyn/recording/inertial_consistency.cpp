@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <type_traits>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/index.hpp"
@@ -91,18 +92,18 @@ std::vector<Window> windows(std::span<const double> stamps, std::span<const Time
   return found;
 }
 
-/// Mean over a window of a 3 x 12 matrix that is known at each moment of the grid; NaN where it is missing somewhere.
+/// Mean over a window of a matrix that is known at each moment of the grid; NaN where it is missing somewhere.
 template <typename AtMoment>
-Eigen::Matrix<double, 3, kUnknowns> mean_over(const Window& window, const numerics::UniformGrid& grid,
-                                              const AtMoment& at_moment) {
-  Eigen::Matrix<double, 3, kUnknowns> sum = Eigen::Matrix<double, 3, kUnknowns>::Zero();
+auto mean_over(const Window& window, const numerics::UniformGrid& grid, const AtMoment& at_moment) {
+  using Value = std::invoke_result_t<AtMoment, std::size_t>;
+  Value sum = Value::Zero();
   const double h = grid.step;
   const auto first = static_cast<std::size_t>(std::max(0.0, std::floor((window.begin - grid.begin) / h)));
   for (std::size_t k = first; k < grid.count && grid.at(k) - 0.5 * h < window.end; ++k) {
     const double overlap = std::min(window.end, grid.at(k) + 0.5 * h) - std::max(window.begin, grid.at(k) - 0.5 * h);
     if (overlap > 0.0) sum += overlap * at_moment(k);
   }
-  return sum / (window.end - window.begin);
+  return Value(sum / (window.end - window.begin));
 }
 
 /// Variance that the white noise of three channels gives the mean rate of change over a window, mean of the three.
@@ -171,14 +172,17 @@ InertialConsistency compare_velocity(const Recording& recording, const InertialS
     const Vector3 acceleration = (v(window.last) - v(window.first)) / (window.end - window.begin);
     const auto X = mean_over(window, s.grid, [&](std::size_t k) { return regressors(ned_from_body(s, k), s.f(k)); });
     Equations::Delays delays = delays_over(s, window);
-    // North of the attitude is not that of the velocity: magnetic declination, or a compass that was not turned.
-    const Vector3 force = X.col(0) + X.col(4) + X.col(8);
-    delays.col(3) << force(1), -force(0), 0.0;
+    // North of the attitude is not that of the velocity: magnetic declination, iron on board, or a compass that was not
+    // turned.
+    delays.rightCols<3>() = mean_over(window, s.grid, [&](std::size_t k) {
+      const Vector3 f = ned_from_body(s, k) * s.f(k), turned(f(1), -f(0), 0.0);
+      return Matrix3(turned * Eigen::RowVector3d(1.0, std::sin(s.angle[2][k]), std::cos(s.angle[2][k])));
+    });
     by_force.add(X, acceleration - gravity, delays);
     // Columns of the unit gain: what the accelerometer says as it is.
-    const Vector3 said = force + gravity;
+    const Vector3 said = X.col(0) + X.col(4) + X.col(8) + gravity;
     // A velocity that is turned as a whole is what its gains are to show.
-    delays.col(3).setZero();
+    delays.rightCols<3>().setZero();
     by_velocity.add(regressors(Matrix3::Identity(), acceleration), said, -delays);
   }
   if (const std::optional<Solved> force = by_force.solve(true, moved)) {

@@ -31,11 +31,12 @@ struct InertialConsistency {
 /// Compares the channels `accel_x|y|z`, `gyro_x|y|z`, `roll`, `pitch`, `yaw`, `vel_north|east|down` of a recording in
 /// the frame frd inside `spans`; what lacks a channel, or has fewer than 60 windows, is missing.
 ///
-/// Gains are found together with the delays and with the zero of the heading, where turns show it, and the velocity is
-/// shifted by its own delay, so that a late sensor is not read as a wrong scale, nor a wrong north as axes that are
-/// turned. First it is asked whether an axis moved enough to say anything: its inverse gain n must be known
-/// to 10 % (the inverse of a number that may be anything is no gain). What is left unexplained beyond the reference's
-/// white noise may be an error of the reading, which attenuates the inverse gain by up to
+/// Gains are found together with the delays and with zero and deviation of the heading, where turns show them, and the
+/// velocity is shifted by its own delay, so that a late sensor is not read as a wrong scale, nor a wrong north or a
+/// compass that swings as axes that are turned. First it is asked whether an axis moved enough to say anything: its
+/// inverse gain n must be known to 10 % (the inverse of a number that may be anything is no gain). What is left
+/// unexplained beyond the reference's white noise may be an error of the reading, which attenuates the inverse gain by
+/// up to
 ///     a = 3 N s^2 [(X'X)^-1]_jj / n^2
 /// (errors in variables, Fuller 1987, section 1.1): a doubt of the gain of the accelerometer, of 0.6 at most.
 [[nodiscard]] InertialConsistency inertial_consistency(const Recording& recording, std::span<const TimeSpan> spans);

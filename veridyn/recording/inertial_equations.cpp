@@ -9,6 +9,7 @@
 #include "veridyn/core/index.hpp"
 #include "veridyn/estimation/judgement/evidence.hpp"
 #include "veridyn/estimation/regression/regression.hpp"
+#include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
 
 namespace veridyn::recording::internal {
 namespace {
@@ -18,6 +19,8 @@ using estimation::RegressionData;
 constexpr std::size_t kFewestWindows = 60;
 /// Root mean square of the horizontal acceleration from which on it shows the zero of the heading [m/s^2].
 constexpr double kShowsHeading = 1.0;
+/// The same of the heading in which it shows least of zero and deviation: turns in all directions.
+constexpr double kShowsDeviation = 0.3;
 /// Standard error of an inverse gain, as a share of it, beyond which its axis did not move enough.
 constexpr double kUndetermined = 0.1;
 /// Share of the reference's signal that is neither explained nor noise of it, from which on sensor and reference
@@ -64,14 +67,24 @@ Eigen::Matrix<double, 3, kUnknowns> regressors(const Matrix3& T, const Vector3& 
   return X;
 }
 
+/// How many of the heading's are shown: none, its zero, or its deviation too.
+Eigen::Index Equations::heading_unknowns() const {
+  Matrix3 squares = Matrix3::Zero();
+  for (const Row& row : rows_) {
+    const Eigen::Matrix3d X = row.X.middleCols<3>(kHeading);
+    squares += X.transpose() * X;
+  }
+  squares /= static_cast<double>(rows_.size());
+  if (!(std::sqrt(squares(0, 0)) > kShowsHeading)) return 0;
+  return std::sqrt(numerics::symmetric_eigenvalues(squares).minCoeff()) > kShowsDeviation ? 3 : 1;
+}
+
 /// Places of the unknowns that are estimated.
 std::vector<Eigen::Index> Equations::unknowns(const Moved& moved, bool delays) const {
-  double turning = 0.0;
-  for (const Row& row : rows_) turning += row.X.col(kHeading).squaredNorm();
-  const bool heading = std::sqrt(turning / static_cast<double>(rows_.size())) > kShowsHeading;
+  const Eigen::Index heading = delays ? heading_unknowns() : 0;
   std::vector<Eigen::Index> places;
-  for (Eigen::Index k = 0; k < (delays ? kAllUnknowns : kUnknowns); ++k)
-    if (k == kHeading ? heading : k >= 9 || moved[k % 3]) places.push_back(k);
+  for (Eigen::Index k = 0; k < (delays ? kHeading + heading : kUnknowns); ++k)
+    if (k >= 9 || moved[k % 3]) places.push_back(k);
   return places;
 }
 

@@ -18,8 +18,10 @@ using Matrix3 = numerics::Matrix3<double>;
 
 /// Unknowns: nine elements of the inverse gain, row by row, then three offsets.
 inline constexpr Eigen::Index kUnknowns = 12;
-/// What may be unknown too: delays of the specific force, of north and east, and of down, and the zero of the heading.
-inline constexpr Eigen::Index kDelays = 4;
+/// What may be unknown too: delays of the specific force, of north and east, and of down, and the error of the heading,
+/// its zero A and what iron on board makes of it, B sin psi + C cos psi (the coefficients of a compass's deviation as
+/// mariners name them: Bowditch, American Practical Navigator).
+inline constexpr Eigen::Index kDelays = 6;
 inline constexpr Eigen::Index kHeading = kUnknowns + 3;
 inline constexpr Eigen::Index kAllUnknowns = kUnknowns + kDelays;
 
@@ -46,7 +48,7 @@ class Equations {
     row.X << X, delays;
     rows_.push_back(row);
   }
-  /// @param delays  whether they, and the zero of the heading, are unknown too
+  /// @param delays  whether they, and the error of the heading, are unknown too
   /// @param moved   axes whose gain is not taken as 1 from the start
   [[nodiscard]] std::optional<Solved> solve(bool delays, std::array<bool, 3> moved = {true, true, true}) const;
 
@@ -70,6 +72,7 @@ class Equations {
   [[nodiscard]] estimation::RegressionData data(const Moved& moved, bool delays) const;
   [[nodiscard]] Estimate estimate(const Moved& moved, bool delays) const;
   [[nodiscard]] double power(std::size_t axis) const;
+  [[nodiscard]] Eigen::Index heading_unknowns() const;
   [[nodiscard]] std::vector<Eigen::Index> unknowns(const Moved& moved, bool delays) const;
   [[nodiscard]] double signal_rms() const;
 

@@ -167,8 +167,8 @@ ExplainedVerdict explain(const CoefficientResult& described, const RegressionEst
   if (!insignificant.empty())
     reason += fmt::format("; not distinguishable from zero: {}", fmt::join(insignificant, ", "));
   if (!unexcited.empty()) reason += fmt::format("; not excited: {}", fmt::join(unexcited, ", "));
-  if (described.judgement.parameters.grade == estimation::Grade::kWithCare)
-    reason += fmt::format("; with care: {}", fmt::join(described.judgement.parameters.decided_by, "; "));
+  // Why is said by the rows, which stand above and, all of them, in the report.
+  if (described.judgement.parameters.grade == estimation::Grade::kWithCare) reason += "; with care";
   return {estimation::GroupVerdict::kIdentified, std::move(reason)};
 }
 

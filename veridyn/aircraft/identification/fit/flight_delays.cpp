@@ -11,6 +11,7 @@
 #include "veridyn/aircraft/identification/fit/manoeuvre_delays.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/estimation/judgement/limits.hpp"
+#include "veridyn/recording/time_order.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -36,11 +37,20 @@ SensorError prior_about_stamps(BudgetSensor sensor, const DelayAlignment& option
 }
 
 /// The prior after what the alignment says of the sensor itself, not by way of others. A deflection that is aligned
-/// while a vane is not may be far off.
+/// while a vane is not may be far off: what it says is a place to look at, which the prior is moved to where the
+/// deflection is recorded after its effect. Manoeuvres alone look for it near the prior's mean and, 50 ms late, find
+/// the wrong side of it.
 SensorError after_alignment(SensorError prior, const DelayReport* report) {
   /// Between samples, and by what moves with it.
   constexpr double kAlignedTo_s = 0.005;
-  if (report == nullptr || !report->determined() || is_surface(prior.sensor)) return prior;
+  if (report == nullptr || !report->determined()) return prior;
+  if (is_surface(prior.sensor)) {
+    if (prior.sigma > 0.0 && recording::is_early(*report, {.early_s = prior.sigma})) {
+      prior.mean = -report->delay_s;
+      prior.sigma = std::hypot(prior.sigma, report->sigma_s);
+    }
+    return prior;
+  }
   // Of the prior about zero, seen from the stamps, off which what was applied is.
   const double applied = report->applied() ? report->delay_s : 0.0;
   prior.mean -= applied;
