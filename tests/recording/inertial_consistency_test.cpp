@@ -210,7 +210,7 @@ TEST(InertialEvidence, NamesALateOrSmoothedVelocity) {
   }
   // A vertical speed behind a filter of its own, in slow motion and in such as a manoeuvre of the elevator makes, of
   // which the filter takes a part.
-  for (const auto& [filter_s, heave] : {std::pair{0.7, 0.6}, {0.2, 3.0}, {0.4, 3.0}}) {
+  for (const auto& [filter_s, heave] : {std::pair{0.7, 0.6}, {0.2, 3.0}, {0.4, 3.0}, {2.5, 0.6}, {1.5, 1.2}}) {
     SCOPED_TRACE(filter_s);
     Recording recording = swaying_body(5, kReference, heave);
     Channel down = recording.at("vel_down");
@@ -218,7 +218,7 @@ TEST(InertialEvidence, NamesALateOrSmoothedVelocity) {
     for (double& v : down.value) v = state += (1.0 - std::exp(-0.1 / filter_s)) * (v - state);
     recording.set(std::move(down));
     const InertialConsistency c = inertial_consistency(recording, kWhole);
-    EXPECT_GT(c.vertical_delay, c.velocity_delay + 0.03);
+    if (filter_s < 1.0) EXPECT_GT(c.vertical_delay, c.velocity_delay + 0.03);
     for (const estimation::Evidence& row : inertial_evidence(c))
       if (row.check != Check::kVelocityDelay) EXPECT_TRUE(row.passed()) << says(row);
   }

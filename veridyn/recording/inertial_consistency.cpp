@@ -204,14 +204,13 @@ SensorNames accelerometer_names() {
           parse_unit("m/s^2")};
 }
 
-/// Where down comes later than north and east a filter has smoothed it, which takes from its fluctuations what a scale
-/// of the accelerometer and a bias against it would. One that is right with a z of unit gain is right, and of that gain
-/// nothing is known.
-void leave_to_filter_of_down(InertialConsistency& found, const InertialConsistency& with_unit_z) {
+/// A filter that smooths down takes from its fluctuations what a scale of the accelerometer, and a bias by which it reads
+/// gravity all the same, would. One that is right with a z of unit gain is right, and of that gain nothing is known.
+void leave_to_filter_of_down(InertialConsistency& found, InertialConsistency with_unit_z) {
   if (!with_unit_z.accelerometer) return;
   const std::vector<Evidence> rows = sensor_matrix_evidence(*with_unit_z.accelerometer, accelerometer_names());
   if (!std::ranges::all_of(rows, &Evidence::passed)) return;
-  found.accelerometer = with_unit_z.accelerometer;
+  found = std::move(with_unit_z);
   found.velocity.reset();
 }
 
@@ -234,8 +233,12 @@ InertialConsistency compare_velocity(const Recording& recording, const InertialS
     if (!shifted.accelerometer || !(shifted.accelerometer->unexplained() < out.accelerometer->unexplained())) break;
     out = std::move(shifted);
   }
+  if (!out.accelerometer) return out;
+  // Down comes later than north and east, or shows less than the accelerometer.
   const double lag_s = out.vertical_delay - out.velocity_delay;
-  if (out.accelerometer && lag_s > 0.0 && conspicuous(lag_s, out.vertical_delay_sigma))
+  const double more = out.accelerometer->gain(2, 2) - 1.0;
+  if ((lag_s > 0.0 && conspicuous(lag_s, out.vertical_delay_sigma)) ||
+      more > estimation::kBeyondChance * out.accelerometer->gain_sigma(2, 2))
     leave_to_filter_of_down(out, compare_velocity(recording, s, spans, out.velocity_delay, {true, true, false}));
   return out;
 }
