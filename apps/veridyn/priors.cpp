@@ -24,10 +24,13 @@ struct Prior {
 
 std::vector<Prior> of_vehicle() {
   std::vector<Prior> priors;
-  for (const vehicle::DrivePrior& p : vehicle::kDriveBudget)
-    priors.push_back({fmt::format("identify.prior.{}", vehicle::kDriveUnknownNames[p.unknown]), p.sigma,
+  const auto add = [&](std::string_view table, const vehicle::DrivePrior& p) {
+    priors.push_back({fmt::format("identify.{}.{}", table, vehicle::kDriveUnknownNames[p.unknown]), p.sigma,
                       std::string(vehicle::kDriveUnknownUnits[p.unknown]), std::string(p.meaning),
                       std::string(p.source)});
+  };
+  for (const vehicle::DrivePrior& p : vehicle::kDriveBudget) add("prior", p);
+  add("uncertainty", vehicle::kSteerScalePrior);
   return priors;
 }
 

@@ -75,7 +75,7 @@ set = "reference"                  # production-car sensors; "perfect"
 [identify]
 @keys identify method structure tyre estimate profiles
 # [identify.uncertainty]           # how well what is taken as known is known
-@keys identify.uncertainty mass a
+@keys identify.uncertainty mass a steer_scale
 
 [validate]
 @keys validate segments open_loop

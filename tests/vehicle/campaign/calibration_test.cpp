@@ -38,6 +38,7 @@ std::vector<Known> intervals_of(std::size_t number, Errors errors) {
   if (errors == Errors::kSensors) {
     numerics::RandomStream draw(number, "errors of a drive's sensors");
     test::delayed({"steer"}, 0.02 * draw.normal())(study.log.mapped.recording);
+    test::scaled({"steer"}, 1.0 + vehicle::kSteerScalePrior.sigma * draw.normal())(study.log.mapped.recording);
     test::delayed({"accel_y"}, 0.01 * draw.normal())(study.log.mapped.recording);
     study.signals.accel_position[0] += 0.3 * draw.normal();  // it is at the centre of gravity
     study.signals.accel_position[2] += 0.2 * draw.normal();

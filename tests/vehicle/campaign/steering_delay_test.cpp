@@ -67,7 +67,8 @@ TEST(SteeringDelay, IsEstimatedAndCorrectedByDefault) {
     EXPECT_NEAR(f.delay_s, -late_s, 0.002);
     // Of eight such drives half are within 3.7 %.
     EXPECT_LT(std::abs(f.I_z_error), 2.0 * f.I_z_sigma);
-    EXPECT_LT(f.I_z_sigma, 0.05);
+    // At one speed 3 % of the steering's scale are 7 % of I_z.
+    EXPECT_LT(f.I_z_sigma, 0.1);
     EXPECT_EQ(f.about, "steer, yaw_rate");
   }
 }

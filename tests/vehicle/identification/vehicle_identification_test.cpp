@@ -134,6 +134,29 @@ TEST(VehicleIdentification, WidensAPriorThatTheDriveContradicts) {
             clean.checks.end());
 }
 
+// At one speed a steering that reads too much looks much like softer tyres. What the intervals hold of it is what a
+// steering does that really reads so.
+TEST(VehicleIdentification, DoesNotTakeAWrongSteeringForSofterTyres) {
+  const VehicleParameters<double> p = family_car();
+  const WanderingSteer steer(5, 0.02);
+  const VehicleTrajectory drive = drive_bicycle<BicycleModel<double, LinearTyre<double>>>(
+      [&](double) { return testing::linear_bicycle(p); }, 60.0, steer, [](double) { return 20.0; });
+  const auto with_scale = [&](double scale) {
+    DriveSensorSet sensors = reference_drive_sensors();
+    sensors[DriveSensorKind::kSteer].scale = scale;
+    return identify(drive, sensors, 1);
+  };
+  constexpr double kScale = 0.04;
+  const VehicleIdentification right = with_scale(0.0), wrong = with_scale(kScale);
+  const VehicleEstimate& best = *wrong.best();
+  for (const auto& [name, truth] : {std::pair{"C_f", p.C_f}, {"C_r", p.C_r}, {"I_z", p.I_z}}) {
+    expect_held(wrong, name, truth);
+    const auto at = best.find(name) - best.parameters.data();
+    const double moves = kScale / kSteerScalePrior.sigma * best.by_steer_scale(at);
+    EXPECT_NEAR(right.best()->find(name)->value - best.find(name)->value, moves, 0.25 * std::abs(moves)) << name;
+  }
+}
+
 TEST(VehicleIdentification, SaysThatStraightDrivingExcitesNothing) {
   const VehicleParameters<double> p = family_car();
   const VehicleIdentification id = identify(lively_drive(p, 1, 1e-4), reference_drive_sensors(), 1);

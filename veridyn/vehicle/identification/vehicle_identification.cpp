@@ -223,6 +223,10 @@ estimation::Estimate make_vehicle_estimate(const VehicleIdentification& identifi
       out.interval_parts[p.name] = {{"by_noise", "noise", parts.by_noise},
                                     {"by_budget", "sensors and tyres", parts.by_budget},
                                     {"by_model", "what the model lacks", parts.by_model}};
+      const auto at = std::ranges::find(best->parameters, p.name, &Parameter::name) - best->parameters.begin();
+      if (at < best->by_steer_scale.size())
+        out.interval_parts[p.name].push_back(
+            {"by_steer_scale", "scale of the steering", std::abs(best->by_steer_scale(at))});
     }
   }
   if (!identification.structure_doubts.empty())

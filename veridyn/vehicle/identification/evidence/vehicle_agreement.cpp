@@ -6,7 +6,6 @@
 
 #include "veridyn/core/index.hpp"
 #include "veridyn/estimation/judgement/check.hpp"
-#include "veridyn/vehicle/identification/fit/drive_parametric_model.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -25,31 +24,10 @@ PartsAgreement compared(const Eigen::VectorXd& here, const Eigen::VectorXd& ther
 
 std::optional<PartsAgreement> by_output_error(const VehicleProblem& problem, const OutputErrorResult& here,
                                               Progress& progress) {
-  VehicleParameters<double> start = problem.start;
-  start.C_f = here.raw.theta(0);
-  start.C_r = here.raw.theta(1);
-  start.I_z = here.raw.theta(2);
-  DriveModelOptions model_options = problem.options.model;
-  model_options.gravity = problem.signal_options.gravity;
-  OutputErrorProblem there_problem{
-      DriveParametricModel(problem.signals, problem.segments.holdout, start, model_options), {}};
-  there_problem.begin_at(here.raw.theta);
-  const DriveParametricModel& model = there_problem.model;
-  estimation::OutputErrorOptions& options = there_problem.options;
-  options.significance = problem.options.significance;
-  // From where the other part ended: if both are one vehicle, few steps of Gauss-Newton are as good as all (Le Cam's
-  // one-step estimator), and if they are not, few show it.
-  options.noise_start = here.raw.noise_covariance.diagonal().cwiseSqrt();
-  options.model_error = true;
-  // After the first one knows how much its samples count for, as the other part does.
-  options.max_relaxations = 2;
-  options.max_steps = 3;
-  options.max_lag =
-      std::max<Eigen::Index>(20, static_cast<Eigen::Index>(kLongestMemory_s * problem.signals.grid.rate_Hz()));
-  const estimation::OutputErrorEstimate there = estimation::output_error(model, model.measured(), options, progress);
-  if (there.termination != estimation::OutputErrorTermination::kConverged &&
-      there.termination != estimation::OutputErrorTermination::kRelaxations)
-    return std::nullopt;
+  const std::optional<estimation::OutputErrorEstimate> fitted =
+      fitted_again(problem, problem.segments.holdout, problem.options.model, here.raw, kLongestMemory_s, progress);
+  if (!fitted) return std::nullopt;
+  const estimation::OutputErrorEstimate& there = *fitted;
   std::vector<Eigen::Index> both;
   for (const DriveUnknown unknown : kVehicleUnknowns) {
     const auto i = static_cast<Eigen::Index>(unknown);

@@ -22,9 +22,11 @@ struct VehicleEstimate {
   /// equation error `steer_offset`, what the biases of steering, gyro and accelerometer add up to as a steer angle.
   std::vector<estimation::Parameter> parameters;
   Eigen::MatrixXd covariance;  ///< in their order
-  /// The part of it that more of the same drive would not make smaller, what is not known of mass, a and b, and the
-  /// model's error on a noise-free drive; empty: none.
+  /// The part of it that more of the same drive would not make smaller, what is not known of mass, a, b and the
+  /// steering's scale, and the model's error on a noise-free drive; empty: none.
   Eigen::MatrixXd given_covariance = {};
+  /// How the parameters of output error move with one standard deviation of the steering's scale; empty: not at all.
+  Eigen::VectorXd by_steer_scale = {};
   double degrees_of_freedom = 1.0;
   /// Null where the method does not estimate it.
   [[nodiscard]] const estimation::Parameter* find(std::string_view name) const;

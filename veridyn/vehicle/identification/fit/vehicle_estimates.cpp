@@ -53,8 +53,8 @@ std::vector<Parameter> with_unexcited(std::vector<Parameter> parameters, double 
   return parameters;
 }
 
-/// What the uncertainty of mass, a and b adds to the covariance of C_f, C_r, I_z and the understeer gradient.
-Eigen::Matrix4d known_covariance(const VehicleProblem& problem, const GeometrySlopes& slopes,
+/// What `[identify.uncertainty]` adds to the covariance of C_f, C_r, I_z and the understeer gradient.
+Eigen::Matrix4d known_covariance(const VehicleProblem& problem, const GivenSlopes& slopes,
                                  const Eigen::Vector4d& value) {
   const VehicleIdentifyOptions& o = problem.options;
   Eigen::Matrix4d P = Eigen::Matrix4d::Zero();
@@ -63,29 +63,40 @@ Eigen::Matrix4d known_covariance(const VehicleProblem& problem, const GeometrySl
     g(3) = 0.0;
     P += o.given.mass * o.given.mass * g * g.transpose();
   }
-  for (const bool front : {true, false}) {
-    const Eigen::Vector4d& g = front ? slopes.a : slopes.b;
-    const double sigma = front ? o.given.a : o.given.b;
-    const Eigen::Vector4d scaled = g.cwiseProduct(value);
-    P += sigma * sigma * scaled * scaled.transpose();
+  for (const auto& [slope, sigma] :
+       {std::pair{&slopes.a, o.given.a}, {&slopes.b, o.given.b}, {&slopes.steer_scale, o.given.steer_scale}}) {
+    const Eigen::Vector4d moved = sigma * slope->cwiseProduct(value);
+    P += moved * moved.transpose();
   }
   return P;
 }
 
 Eigen::Vector4d values_of(const AxleEstimate& e) { return {e.value(0), e.value(1), e.value(2), e.understeer}; }
 
-GeometrySlopes geometry_slopes(const VehicleProblem& problem, const AxleEstimate& typical) {
-  const auto slope = [&](double VehicleParameters<double>::*field, double sigma) -> Eigen::Vector4d {
-    if (!(sigma > 0.0)) return Eigen::Vector4d::Zero();
-    VehicleParameters<double> changed = problem.start;
-    changed.*field += sigma;
-    const DriveRegressionResult again = regress(problem, problem.segments.identification, changed);
+GivenSlopes given_slopes(const VehicleProblem& problem, const AxleEstimate& typical) {
+  const GivenVehicleSigma& sigma = problem.options.given;
+  const auto slope = [&](const VehicleProblem& changed, const VehicleParameters<double>& known,
+                         double by) -> Eigen::Vector4d {
+    const DriveRegressionResult again = regress(changed, changed.segments.identification, known);
     const AxleEstimate* other = again.find(Method::kGtls);
     if (other == nullptr || !other->usable) return Eigen::Vector4d::Zero();
-    return (values_of(*other) - values_of(typical)).cwiseQuotient(values_of(typical)) / sigma;
+    return (values_of(*other) - values_of(typical)).cwiseQuotient(values_of(typical)) / by;
   };
-  return {slope(&VehicleParameters<double>::a, problem.options.given.a),
-          slope(&VehicleParameters<double>::b, problem.options.given.b)};
+  const auto of_geometry = [&](double VehicleParameters<double>::*field, double by) -> Eigen::Vector4d {
+    if (!(by > 0.0)) return Eigen::Vector4d::Zero();
+    VehicleParameters<double> changed = problem.start;
+    changed.*field += by;
+    return slope(problem, changed, by);
+  };
+  GivenSlopes slopes{.a = of_geometry(&VehicleParameters<double>::a, sigma.a),
+                     .b = of_geometry(&VehicleParameters<double>::b, sigma.b)};
+  if (sigma.steer_scale > 0.0) {
+    DriveSignals scaled = problem.signals;
+    for (double& steer : scaled[DriveSignal::kSteer].value) steer /= 1.0 + sigma.steer_scale;
+    slopes.steer_scale = slope({scaled, problem.segments, problem.start, problem.signal_options, problem.options},
+                               problem.start, sigma.steer_scale);
+  }
+  return slopes;
 }
 
 /// Covariance of C_f, C_r, I_z, the understeer gradient and, where there is one, the steer offset; mass, a and b taken
@@ -112,7 +123,7 @@ Eigen::MatrixXd axle_covariance(const VehicleProblem& problem, const AxleEstimat
   return P;
 }
 
-VehicleEstimate estimate_of(const VehicleProblem& problem, const AxleEstimate& axle, const GeometrySlopes& slopes,
+VehicleEstimate estimate_of(const VehicleProblem& problem, const AxleEstimate& axle, const GivenSlopes& slopes,
                             bool steer_bias) {
   VehicleEstimate e;
   e.method = vehicle_method(axle.method);
@@ -232,8 +243,8 @@ Eigen::MatrixXd output_error_covariance(const estimation::OutputErrorEstimate& r
   return P;
 }
 
-/// What the uncertainty of mass, a and b adds to the rows of `places`.
-Eigen::MatrixXd given_covariance(const VehicleProblem& problem, const GeometrySlopes& slopes,
+/// What the uncertainty of mass, a and b adds to the rows of `places`; the steering's scale is fitted again for.
+Eigen::MatrixXd given_covariance(const VehicleProblem& problem, const GivenSlopes& slopes,
                                  const estimation::OutputErrorEstimate& result, const VehicleParameters<double>& p,
                                  const Places& places) {
   const Eigen::Index understeer = places.understeer;
@@ -254,7 +265,7 @@ Eigen::MatrixXd given_covariance(const VehicleProblem& problem, const GeometrySl
   return P;
 }
 
-VehicleEstimate estimate_of(const VehicleProblem& problem, const GeometrySlopes& slopes,
+VehicleEstimate estimate_of(const VehicleProblem& problem, const GivenSlopes& slopes,
                             const estimation::OutputErrorEstimate& result) {
   VehicleEstimate e;
   e.method = VehicleMethod::kOutputError;
@@ -293,6 +304,35 @@ VehicleEstimate estimate_of(const VehicleProblem& problem, const GeometrySlopes&
   return e;
 }
 
+/// How the parameters move with one standard deviation of the steering's scale, by fitting the drive with it; nothing
+/// where that fit does not end.
+Eigen::VectorXd moved_by_steer_scale(const VehicleProblem& problem, const estimation::OutputErrorEstimate& here,
+                                     Progress& progress) {
+  DriveModelOptions model = problem.options.model;
+  model.start[DriveUnknown::kSteerScale] = problem.options.given.steer_scale;
+  const std::optional<estimation::OutputErrorEstimate> there =
+      fitted_again(problem, problem.segments.identification, model, here, kLongestLag_s, progress);
+  if (!there) return {};
+  const VehicleEstimate from = estimate_of(problem, GivenSlopes{}, here),
+                        to = estimate_of(problem, GivenSlopes{}, *there);
+  Eigen::VectorXd moved(signed_index(from.parameters.size()));
+  for (Eigen::Index i = 0; i < moved.size(); ++i) moved(i) = to.parameters[i].value - from.parameters[i].value;
+  return moved;
+}
+
+/// Widens an estimate by what is not known of the steering's scale.
+VehicleEstimate with_steer_scale(VehicleEstimate estimate, Eigen::VectorXd moved, double significance) {
+  const Eigen::VectorXd before = estimate.covariance.diagonal();
+  estimate.covariance += moved * moved.transpose();
+  estimate.given_covariance += moved * moved.transpose();
+  for (Eigen::Index i = 0; i < moved.size(); ++i)
+    if (before(i) > 0.0 && std::isfinite(before(i)))
+      estimation::widen(estimate.parameters[i], estimate.covariance(i, i) / before(i), estimate.degrees_of_freedom,
+                        significance);
+  estimate.by_steer_scale = std::move(moved);
+  return estimate;
+}
+
 }  // namespace
 
 DriveRegressionResult regress(const VehicleProblem& problem, std::span<const TimeSpan> spans,
@@ -310,7 +350,7 @@ EquationErrorEstimates estimate_by_equation_error(const VehicleProblem& problem)
   EquationErrorEstimates out;
   out.regression = regress(problem, problem.segments.identification, problem.start);
   const AxleEstimate* typical = out.regression.find(Method::kGtls);
-  if (typical != nullptr && typical->usable) out.slopes = geometry_slopes(problem, *typical);
+  if (typical != nullptr && typical->usable) out.slopes = given_slopes(problem, *typical);
   for (const AxleEstimate& axle : out.regression.axles)
     out.estimates.push_back(estimate_of(problem, axle, out.slopes, !out.regression.data.direct));
   return out;
@@ -356,8 +396,46 @@ OutputErrorResult estimate_by_output_error(const VehicleProblem& problem, const 
   given.begin_at(start);
   OutputErrorResult out;
   out.raw = estimation::output_error(given.model, given.model.measured(), given.options, progress);
-  out.estimate = estimate_of(problem, equation_error != nullptr ? equation_error->slopes : GeometrySlopes{}, out.raw);
+  GivenSlopes slopes = equation_error != nullptr ? equation_error->slopes : GivenSlopes{};
+  const GivenVehicleSigma& sigma = problem.options.given;
+  const bool scaled = effort == SearchEffort::kToTheEnd && sigma.steer_scale > 0.0 && out.raw.usable() &&
+                      !problem.options.model.free[DriveUnknown::kSteerScale];
+  const Eigen::VectorXd moved = scaled ? moved_by_steer_scale(problem, out.raw, progress) : Eigen::VectorXd();
+  // Where that fit does not end, as the regression moves.
+  if (!scaled || moved.size() > 0) slopes.steer_scale.setZero();
+  out.estimate = estimate_of(problem, slopes, out.raw);
+  if (moved.size() > 0) out.estimate = with_steer_scale(std::move(out.estimate), moved, problem.options.significance);
   return out;
+}
+
+std::optional<estimation::OutputErrorEstimate> fitted_again(const VehicleProblem& problem,
+                                                            std::span<const TimeSpan> spans,
+                                                            const DriveModelOptions& model_options,
+                                                            const estimation::OutputErrorEstimate& here,
+                                                            double longest_memory_s, Progress& progress) {
+  VehicleParameters<double> start = problem.start;
+  start.C_f = here.theta(0);
+  start.C_r = here.theta(1);
+  start.I_z = here.theta(2);
+  DriveModelOptions with_gravity = model_options;
+  with_gravity.gravity = problem.signal_options.gravity;
+  OutputErrorProblem again{DriveParametricModel(problem.signals, spans, start, with_gravity), {}};
+  again.begin_at(here.theta);
+  estimation::OutputErrorOptions& options = again.options;
+  options.significance = problem.options.significance;
+  options.noise_start = here.noise_covariance.diagonal().cwiseSqrt();
+  options.model_error = true;
+  // After the first one knows how much its samples count for, as the other part does.
+  options.max_relaxations = 2;
+  options.max_steps = 3;
+  options.max_lag =
+      std::max<Eigen::Index>(20, static_cast<Eigen::Index>(longest_memory_s * problem.signals.grid.rate_Hz()));
+  estimation::OutputErrorEstimate there =
+      estimation::output_error(again.model, again.model.measured(), options, progress);
+  if (there.termination != estimation::OutputErrorTermination::kConverged &&
+      there.termination != estimation::OutputErrorTermination::kRelaxations)
+    return std::nullopt;
+  return there;
 }
 
 Eigen::VectorXd within_bounds(const DriveParametricModel& model, Eigen::VectorXd theta) {

@@ -15,17 +15,19 @@
 
 namespace veridyn::vehicle {
 
-/// How C_f, C_r, I_z and the understeer gradient change, as shares of themselves, per metre of a and of b. They enter
-/// the estimates' covariances through `[identify.uncertainty]`; 0 where that gives no uncertainty.
-struct GeometrySlopes {
+/// How C_f, C_r, I_z and the understeer gradient change, as shares of themselves, per metre of a and of b and with the
+/// steering's scale. They enter the estimates' covariances through `[identify.uncertainty]`; 0 where that gives no
+/// uncertainty.
+struct GivenSlopes {
   Eigen::Vector4d a = Eigen::Vector4d::Zero();
   Eigen::Vector4d b = Eigen::Vector4d::Zero();
+  Eigen::Vector4d steer_scale = Eigen::Vector4d::Zero();
 };
 
 /// Equation error by all regressions, with the vehicle's parameters that each gives.
 struct EquationErrorEstimates {
   DriveRegressionResult regression;
-  GeometrySlopes slopes;
+  GivenSlopes slopes;
   std::vector<VehicleEstimate> estimates;  ///< one for each regression
 };
 
@@ -39,13 +41,13 @@ struct OutputErrorResult {
 [[nodiscard]] DriveRegressionResult regress(const VehicleProblem& problem, std::span<const TimeSpan> spans,
                                             const VehicleParameters<double>& known);
 
-/// All regressions over the identification segments; what the uncertainty of mass, a and b adds is in the covariances.
+/// All regressions over the identification segments; what `[identify.uncertainty]` adds is in the covariances.
 [[nodiscard]] EquationErrorEstimates estimate_by_equation_error(const VehicleProblem& problem);
 
 /// How far a search goes.
 enum class SearchEffort {
   kToCompare,  ///< a few steps: enough to distinguish structures
-  kToTheEnd
+  kToTheEnd    ///< and fitted again with another scale of the steering, of which a standard deviation is given
 };
 
 /// Starts from the equation error where that is known well enough; `equation_error` may be null. `search_start`: of all
@@ -62,6 +64,15 @@ struct OutputErrorProblem {
   /// Where the search begins: `theta` within the bounds, with what noise of the steering gives the outputs there.
   void begin_at(const Eigen::VectorXd& theta);
 };
+/// Output error over some spans of a drive, from where `here` ended, which fitted the same vehicle to something close:
+/// a few steps of Gauss-Newton are as good as all (Le Cam's one-step estimator), and where they are not, few show it.
+/// Nothing where it does not end. @param longest_memory_s  of residuals that are correlated
+[[nodiscard]] std::optional<estimation::OutputErrorEstimate> fitted_again(const VehicleProblem& problem,
+                                                                          std::span<const TimeSpan> spans,
+                                                                          const DriveModelOptions& model,
+                                                                          const estimation::OutputErrorEstimate& here,
+                                                                          double longest_memory_s, Progress& progress);
+
 /// The output-error problem of a drive; `equation_error` may be null, `search_factor` as of DriveModelOptions.
 [[nodiscard]] OutputErrorProblem output_error_problem(const VehicleProblem& problem,
                                                       const EquationErrorEstimates* equation_error,

@@ -35,7 +35,11 @@ const KeyTable<GivenVehicleSigma>& given_sigma_keys() {
           "C_f/m, C_r/m and I_z/m; what else the error bars hold comes from here.")
           .number("mass", &S::mass, "kg", kNotNegative, "of the whole vehicle")
           .number("a", &S::a, "m", kNotNegative, "of the distance to the front axle")
-          .number("b", &S::b, "m", kNotNegative, "of the distance to the rear axle");
+          .number("b", &S::b, "m", kNotNegative, "of the distance to the rear axle")
+          .number(
+              "steer_scale", &S::steer_scale, "", kNotNegative,
+              "of the recorded over the true steering, whose gear ratio differs between centre and lock; 0 where it "
+              "was calibrated, or simulated");
   return table;
 }
 

@@ -6,18 +6,19 @@
 
 #include "veridyn/core/study.hpp"
 #include "veridyn/estimation/judgement/limits.hpp"
+#include "veridyn/vehicle/identification/options/drive_budget.hpp"
 #include "veridyn/vehicle/identification/options/drive_model_options.hpp"
 #include "veridyn/vehicle/identification/options/drive_structure.hpp"
 #include "veridyn/vehicle/identification/options/vehicle_method.hpp"
 
 namespace veridyn::vehicle {
 
-/// How well mass and geometry, which are taken as known, are known: standard deviations. Study table
-/// `[identify.uncertainty]`.
+/// How well what is taken as known is known: standard deviations. Study table `[identify.uncertainty]`.
 struct GivenVehicleSigma {
-  double mass = 0.0;  ///< [kg]
-  double a = 0.0;     ///< [m]
-  double b = 0.0;     ///< [m]
+  double mass = 0.0;                            ///< [kg]
+  double a = 0.0;                               ///< [m]
+  double b = 0.0;                               ///< [m]
+  double steer_scale = kSteerScalePrior.sigma;  ///< of what is recorded over true
 };
 
 /// What identification may do and what it demands of its result. Study table `[identify]`, with the keys of
