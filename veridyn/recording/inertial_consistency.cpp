@@ -204,8 +204,9 @@ SensorNames accelerometer_names() {
           parse_unit("m/s^2")};
 }
 
-/// A filter that smooths down takes from its fluctuations what a scale of the accelerometer, and a bias by which it reads
-/// gravity all the same, would. One that is right with a z of unit gain is right, and of that gain nothing is known.
+/// A filter that smooths down takes from its fluctuations what a scale of the accelerometer, and a bias by which it
+/// reads gravity all the same, would. One that is right with a z of unit gain is right, and of that gain nothing is
+/// known.
 void leave_to_filter_of_down(InertialConsistency& found, InertialConsistency with_unit_z) {
   if (!with_unit_z.accelerometer) return;
   const std::vector<Evidence> rows = sensor_matrix_evidence(*with_unit_z.accelerometer, accelerometer_names());
