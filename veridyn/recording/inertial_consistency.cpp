@@ -207,11 +207,11 @@ SensorNames accelerometer_names() {
 /// A filter that smooths down takes from its fluctuations what a scale of the accelerometer, and a bias by which it
 /// reads gravity all the same, would. One that is right with a z of unit gain is right, and of that gain nothing is
 /// known.
-void leave_to_filter_of_down(InertialConsistency& found, InertialConsistency with_unit_z) {
+void leave_to_filter_of_down(InertialConsistency& found, const InertialConsistency& with_unit_z) {
   if (!with_unit_z.accelerometer) return;
   const std::vector<Evidence> rows = sensor_matrix_evidence(*with_unit_z.accelerometer, accelerometer_names());
   if (!std::ranges::all_of(rows, &Evidence::passed)) return;
-  found = std::move(with_unit_z);
+  found.accelerometer = with_unit_z.accelerometer;
   found.velocity.reset();
 }
 
