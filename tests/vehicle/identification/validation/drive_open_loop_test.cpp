@@ -102,7 +102,9 @@ TEST(DriveOpenLoop, BandsOfIdentifiedModelsCoverOtherDrives) {
     const VehicleAnalysis other = validate(read_study(study, recorded(seed + 100, 120.0), silent), found, silent);
     inside += pooled_inside(other.open_loop) / static_cast<double>(kDrives);
   }
-  EXPECT_NEAR(inside, 0.955, 0.015);
+  // 95 % of what sensors and the car make of it; the bands also hold the steering's scale, which is exact here.
+  EXPECT_GT(inside, 0.94);
+  EXPECT_LT(inside, 0.99);
 }
 
 TEST(DriveOpenLoop, OfAWrongParameterLeavesItsBandsSoonAndTheRowSaysSo) {
