@@ -34,8 +34,8 @@ RealFlight identified_real(const std::string& study, const fs::path& out) {
 }
 
 // The Thor flight is closed loop in strong wind, without manoeuvres made for identification: the published derivatives
-// of lift, drag and moments are not recovered from it by anyone's regression, and the tool has to say so. That of the
-// side force is, to a third.
+// of lift, drag and moments are not recovered from it by anyone's regression, and the tool has to say so. CY_beta
+// is, within its interval.
 TEST_F(RealFlights, RejectsTheThorFlight) {
   if (!fs::exists(test::shared_folder() / "data/flight/umn_thor/thor_flight75_airborne.csv"))
     GTEST_SKIP() << "the recordings beside the repository are missing";

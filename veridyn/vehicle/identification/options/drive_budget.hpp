@@ -35,8 +35,9 @@ inline constexpr std::array kDriveBudget{
     DrivePrior{DriveUnknown::kRollSteerR, 0.05, "the same of the rear tyres", "as in front"}};
 
 /// The scale of the steering is the same in all samples too, and is in the intervals, but is not corrected: what a
-/// drive seems to say of it is what the model lacks. Estimated from either half of drives of CommonRoad's multi-body
-/// cars, of which none has such an error, it came out -0.012 +- 0.008 and 0.048 +- 0.007.
+/// drive seems to say of it is what the model lacks. Estimated from the identification and from the hold-out part of a
+/// drive of CommonRoad's second multi-body car, which has no such error, it came out -0.012 +- 0.008 and 0.048 +-
+/// 0.007.
 inline constexpr DrivePrior kSteerScalePrior{
     DriveUnknown::kSteerScale, 0.03, "measured over true steering, less 1; in the intervals, never corrected",
     "ours: steering gears whose ratio is of a data sheet, or measured by a protractor at one angle"};
