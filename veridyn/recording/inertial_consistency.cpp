@@ -170,14 +170,18 @@ InertialConsistency compare_velocity(const Recording& recording, const InertialS
   for (const Window& window : windows(stamps, spans, kVelocityWindow_s, kVelocityHop_s)) {
     const auto v = [&](std::size_t i) { return Vector3(north.value[i], east.value[i], down.value[i]); };
     const Vector3 acceleration = (v(window.last) - v(window.first)) / (window.end - window.begin);
-    const auto X = mean_over(window, s.grid, [&](std::size_t k) { return regressors(ned_from_body(s, k), s.f(k)); });
-    Equations::Delays delays = delays_over(s, window);
-    // North of the attitude is not that of the velocity: magnetic declination, iron on board, or a compass that was not
-    // turned.
-    delays.rightCols<3>() = mean_over(window, s.grid, [&](std::size_t k) {
-      const Vector3 f = ned_from_body(s, k) * s.f(k), turned(f(1), -f(0), 0.0);
-      return Matrix3(turned * Eigen::RowVector3d(1.0, std::sin(s.angle[2][k]), std::cos(s.angle[2][k])));
+    // Regressors, and what an error of the heading adds: north of the attitude is not that of the velocity by magnetic
+    // declination, iron on board, or a compass that was not turned.
+    const auto means = mean_over(window, s.grid, [&](std::size_t k) {
+      const Matrix3 R = ned_from_body(s, k);
+      const Vector3 f = R * s.f(k), turned(f(1), -f(0), 0.0);
+      Eigen::Matrix<double, 3, kUnknowns + 3> both;
+      both << regressors(R, s.f(k)), turned * Eigen::RowVector3d(1.0, std::sin(s.angle[2][k]), std::cos(s.angle[2][k]));
+      return both;
     });
+    const Eigen::Matrix<double, 3, kUnknowns> X = means.leftCols<kUnknowns>();
+    Equations::Delays delays = delays_over(s, window);
+    delays.rightCols<3>() = means.rightCols<3>();
     by_force.add(X, acceleration - gravity, delays);
     // Columns of the unit gain: what the accelerometer says as it is.
     const Vector3 said = X.col(0) + X.col(4) + X.col(8) + gravity;
