@@ -95,26 +95,35 @@ TEST(RollingCars, TyresThatSaturateAreToldFromSofterOnes) {
   EXPECT_EQ(result.covered, result.intervals);
 }
 
-// An accelerometer a quarter of a metre above where the study has it, on a body that leans, with quiet sensors: taken
-// at its word, C_f, C_r and I_z come out 10 to 14 % high.
+// An accelerometer a quarter of a metre above where the study has it, on a body that leans. With sensors so quiet that a
+// bicycle that rolls leaves more of a four-wheel car than noise, its height is found in part (0.2 +- 0.13 m), and C_r,
+// which is 10 % high if it is taken at its word, comes out 1.5 % high. C_f and I_z are 6 to 8 % high with it and 3 to 6 %
+// off without: place, trail and roll steer take their share of what the height does, and the intervals hold it.
 TEST(RollingCars, AnAccelerometerAboveTheCentreOfGravityIsSeen) {
+  constexpr double kAbove_m = 0.25;
   VehicleStudy study =
       testing::rolling_drive(testing::rolling_car(4), CarTyre::kLinear, 5, 17, {.duration_s = 60.0, .noise = 0.1});
-  study.signals.accel_position[2] -= 0.25;
+  study.signals.accel_position[2] -= kAbove_m;
   const testing::IdentifiedDrive drive = testing::identified(study);
+  study.identify.model.prior[DriveUnknown::kAccelHeight] = 1e-6;
+  const testing::IdentifiedDrive at_its_word = testing::identified(study);
   ASSERT_FALSE(drive.refused) << drive.message;
+  ASSERT_FALSE(at_its_word.refused) << at_its_word.message;
   const VehicleEstimate* best = drive.analysis.identification.best();
   const estimation::Parameter* height = best->find("accel_height");
   ASSERT_NE(height, nullptr);
-  EXPECT_GT(height->low95, 0.0);
-  EXPECT_LE(height->low95, 0.25);
-  EXPECT_GE(height->high95, 0.25);
+  EXPECT_GT(height->value, 0.5 * kAbove_m);
+  EXPECT_LE(height->low95, kAbove_m);
+  EXPECT_GE(height->high95, kAbove_m);
   for (const char* name : {"C_f", "C_r", "I_z"}) {
     const estimation::Parameter* p = best->find(name);
-    EXPECT_NEAR(p->value, study.truth.at(name), 0.06 * study.truth.at(name)) << name;
+    EXPECT_NEAR(p->value, study.truth.at(name), 0.1 * study.truth.at(name)) << name;
     EXPECT_LE(p->low95, study.truth.at(name)) << name;
     EXPECT_GE(p->high95, study.truth.at(name)) << name;
   }
+  const double C_r = study.truth.at("C_r");
+  EXPECT_LT(std::abs(best->find("C_r")->value - C_r),
+            0.5 * std::abs(at_its_word.analysis.identification.best()->find("C_r")->value - C_r));
 }
 
 // Ten cars, six drives of each, three kinds of tyres, five noises of each, no two alike; an hour and a half. Writes

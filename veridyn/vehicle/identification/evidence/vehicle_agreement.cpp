@@ -80,14 +80,9 @@ estimation::Evidence parts_row(const PartsAgreement& parts, double contradiction
 VehicleEstimate widened(VehicleEstimate estimate, double factor, double significance) {
   if (!(factor > 1.0)) return estimate;
   // What is not known of mass and geometry is the same in all parts.
-  const Eigen::VectorXd before = estimate.covariance.diagonal();
-  estimate.covariance *= factor;
-  if (estimate.given_covariance.size() > 0) estimate.covariance -= (factor - 1.0) * estimate.given_covariance;
-  for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
-    const double ratio = estimate.covariance.diagonal()(signed_index(i)) / before(signed_index(i));
-    estimation::widen(estimate.parameters[i], ratio, estimate.degrees_of_freedom, significance);
-  }
-  return estimate;
+  Eigen::MatrixXd grown = factor * estimate.covariance;
+  if (estimate.given_covariance.size() > 0) grown -= (factor - 1.0) * estimate.given_covariance;
+  return with_covariance(std::move(estimate), std::move(grown), significance);
 }
 
 }  // namespace veridyn::vehicle

@@ -35,6 +35,9 @@ struct VehicleEstimate {
 /// The estimate by a method, or null.
 [[nodiscard]] const VehicleEstimate* find_estimate(std::span<const VehicleEstimate> estimates, VehicleMethod method);
 
+/// An estimate whose covariance has grown: intervals and status of each parameter follow its variance.
+[[nodiscard]] VehicleEstimate with_covariance(VehicleEstimate estimate, Eigen::MatrixXd grown, double significance);
+
 /// The parameter that is no unknown of a model, but follows from them.
 inline constexpr std::string_view kUndersteerGradient = "understeer_gradient";
 /// Whether a parameter is the vehicle's, not the day's.

@@ -322,15 +322,11 @@ Eigen::VectorXd moved_by_steer_scale(const VehicleProblem& problem, const estima
 
 /// Widens an estimate by what is not known of the steering's scale.
 VehicleEstimate with_steer_scale(VehicleEstimate estimate, Eigen::VectorXd moved, double significance) {
-  const Eigen::VectorXd before = estimate.covariance.diagonal();
-  estimate.covariance += moved * moved.transpose();
-  estimate.given_covariance += moved * moved.transpose();
-  for (Eigen::Index i = 0; i < moved.size(); ++i)
-    if (before(i) > 0.0 && std::isfinite(before(i)))
-      estimation::widen(estimate.parameters[i], estimate.covariance(i, i) / before(i), estimate.degrees_of_freedom,
-                        significance);
+  const Eigen::MatrixXd added = moved * moved.transpose();
+  Eigen::MatrixXd grown = estimate.covariance + added;
+  estimate.given_covariance += added;
   estimate.by_steer_scale = std::move(moved);
-  return estimate;
+  return with_covariance(std::move(estimate), std::move(grown), significance);
 }
 
 }  // namespace

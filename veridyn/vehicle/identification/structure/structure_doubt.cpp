@@ -35,18 +35,13 @@ StructureDoubt structure_doubt(DriveStructure structure, double probability, con
 
 VehicleEstimate with_doubt(VehicleEstimate estimate, std::span<const StructureDoubt> doubts, double significance) {
   const auto n = signed_index(estimate.parameters.size());
-  const Eigen::VectorXd before = estimate.covariance.diagonal();
+  Eigen::MatrixXd grown = estimate.covariance;
   for (const StructureDoubt& doubt : doubts) {
     Eigen::VectorXd difference(n);
     for (Eigen::Index i = 0; i < n; ++i) difference(i) = difference_of(doubt, estimate.parameters[i].name);
-    estimate.covariance += doubt.probability * difference * difference.transpose();
+    grown += doubt.probability * difference * difference.transpose();
   }
-  for (Eigen::Index i = 0; i < n; ++i) {
-    if (!(before(i) > 0.0) || !std::isfinite(before(i))) continue;
-    estimation::widen(estimate.parameters[i], estimate.covariance(i, i) / before(i), estimate.degrees_of_freedom,
-                      significance);
-  }
-  return estimate;
+  return with_covariance(std::move(estimate), std::move(grown), significance);
 }
 
 double doubt_of(std::span<const StructureDoubt> doubts, std::string_view parameter) {
