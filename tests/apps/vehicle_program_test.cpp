@@ -63,7 +63,7 @@ TEST_F(VehicleProgram, DrivesScalesAndIdentifiesItsOwnTemplate) {
 TEST_F(VehicleProgram, WantsTheMassOfTheCarWhoseLogItReads) {
   ASSERT_EQ(run("init vehicle --log drive.csv --quiet --out " + folder_.string()).exit_code, 0);
   expect_refusal("identify " + (folder_ / "study.toml").string() + out(),
-                 "subject.mass: is still the template's placeholder: put in your own number [kg]");
+                 "subject.mass: is still the template's placeholder, as are subject.");
 }
 
 TEST_F(VehicleProgram, WritesAVehicleThatItReadsAgain) {

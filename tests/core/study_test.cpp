@@ -53,6 +53,21 @@ TEST(Study, RefusesThePlaceholderOfATemplate) {
             "study.toml:1: mass: is still the template's placeholder: put in your own number [kg]");
 }
 
+TEST(Study, ListsAllPlaceholdersThatAreLeft) {
+  const StudyTable root =
+      study(
+          "title = \"what?\"\n[subject]\nspan = \"? m\"\nmass = \"? kg\"\n"
+          "inertia = { Jx = 1, Jy = \"? kg m^2\" }\n[data.map]\np = { channel = \"P\", unit = \"?\" }\n")
+          .root();
+  EXPECT_EQ(why([&] { static_cast<void>(root.table("subject").number("mass", "kg")); }),
+            "study.toml:4: subject.mass: is still the template's placeholder, as are subject.span (line 3), "
+            "subject.inertia.Jy (line 5), data.map.p.unit (line 7): put in your own values");
+  EXPECT_EQ(why([&] { static_cast<void>(root.table("data").table("map").table("p").text("unit")); }).substr(0, 67),
+            "study.toml:7: data.map.p.unit: is still the template's placeholder,");
+  EXPECT_EQ(why([] { static_cast<void>(study("a = \"?\"\n").root().text("a")); }),
+            "study.toml:1: a: is still the template's placeholder: put in your own value");
+}
+
 TEST(Study, RefusesUnknownKeysAndSuggestsTheNearest) {
   const Study misspelt = study("[subject]\nmass = 2\nspann = 3\n");
   const StudyTable subject = misspelt.root().table("subject");

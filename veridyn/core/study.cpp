@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -17,6 +16,7 @@
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/core/study_placeholders.hpp"
 #include "veridyn/core/subject_files.hpp"
 #include "veridyn/core/units.hpp"
 
@@ -88,9 +88,15 @@ std::string place_of(const StudyNode& node, const toml::node* at, std::string_vi
   return full.empty() ? fmt::format("{}:{}", name, line) : fmt::format("{}:{}: {}", name, line, full);
 }
 
+/// Refuses a placeholder, together with all others of the study.
+const toml::node& filled(const StudyNode& table, const toml::node& value, const std::string& place) {
+  if (!internal::is_placeholder(value)) return value;
+  std::vector<internal::Placeholder> all;
+  if (table.document) internal::find_placeholders(table.document->root, "", all);
+  throw InputError(place, internal::placeholder_refusal(value.as_string()->get(), value.source().begin.line, all));
+}
+
 double number_with_unit(const std::string& text, std::string_view unit, const std::string& place) {
-  if (text.starts_with('?'))
-    throw InputError(place, fmt::format("is still the template's placeholder: put in your own number [{}]", unit));
   double number = 0.0;
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc{}) {
@@ -291,7 +297,7 @@ toml::node& require(const StudyTable& table, const StudyNode& node, std::string_
 
 double StudyTable::number(std::string_view key, std::string_view unit) const {
   node_->known.emplace(key);
-  return number_from(require(*this, *node_, key), unit, place(key));
+  return number_from(filled(*node_, require(*this, *node_, key), place(key)), unit, place(key));
 }
 
 double StudyTable::number_or(std::string_view key, std::string_view unit, double otherwise) const {
@@ -333,7 +339,7 @@ bool StudyTable::flag_or(std::string_view key, bool otherwise) const {
 
 std::string StudyTable::text(std::string_view key) const {
   node_->known.emplace(key);
-  return text_from(require(*this, *node_, key), place(key));
+  return text_from(filled(*node_, require(*this, *node_, key), place(key)), place(key));
 }
 
 std::string StudyTable::text_or(std::string_view key, std::string_view otherwise) const {
@@ -353,10 +359,11 @@ std::vector<double> StudyTable::numbers(std::string_view key, std::string_view u
   node_->known.emplace(key);
   const toml::node& node = require(*this, *node_, key);
   const toml::array* array = node.as_array();
-  if (array == nullptr) return {number_from(node, unit, place(key))};
+  if (array == nullptr) return {number(key, unit)};
   std::vector<double> values;
   for (std::size_t i = 0; i < array->size(); ++i) {
-    values.push_back(number_from(*array->get(i), unit, fmt::format("{}[{}]", place(key), i)));
+    const std::string element = fmt::format("{}[{}]", place(key), i);
+    values.push_back(number_from(filled(*node_, *array->get(i), element), unit, element));
   }
   return values;
 }

@@ -12,6 +12,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/core/unit_spellings.hpp"
 
 namespace veridyn {
 namespace {
@@ -67,6 +68,7 @@ const std::map<std::string, NamedUnit, std::less<>>& known_units() {
       {"K", {kTemperature, 1.0}},
       {"degC", {kTemperature, 1.0, 273.15}},
       {"degF", {kTemperature, 5.0 / 9.0, 459.67 * 5.0 / 9.0}},
+      {"degR", {kTemperature, 5.0 / 9.0}},
       {"A", {kCurrent, 1.0}},
       {"mA", {kCurrent, 1e-3}},
       {"rad", {kAngle, 1.0}},
@@ -166,35 +168,8 @@ std::string kind_of(const Unit& unit) {
   return found == kinds.end() ? "" : found->second + " ";
 }
 
-}  // namespace
-
-std::string Unit::si_name() const {
-  static constexpr std::array<const char*, kDimensions> kBase{"m", "kg", "s", "K", "A", "rad"};
-  // A moment and an energy have the same dimension; here it is nearly always a moment, and no one reads a moment in
-  // joules.
-  static const std::map<Dimension, std::string> derived{{kForce, "N"},        {kPressure, "Pa"}, {kEnergy, "N m"},
-                                                        {kPower, "W"},        {kVoltage, "V"},   {kFrequency, "Hz"},
-                                                        {kMagneticField, "T"}};
-  if (const auto found = derived.find(dimension); found != derived.end()) return found->second;
-  // Metre before kilogram reads oddly in "m^2 kg", so mass is written first.
-  static constexpr std::array<std::size_t, kDimensions> kOrder{1, 0, 5, 3, 4, 2};
-  std::string above;
-  std::string below;
-  for (const std::size_t i : kOrder) {
-    const int power = dimension[i];
-    if (power == 0) continue;
-    std::string& side = power > 0 ? above : below;
-    if (!side.empty()) side += power > 0 ? " " : "/";
-    side += kBase[i];
-    if (power > 1 || power < -1) side += fmt::format("^{}", power > 0 ? power : -power);
-  }
-  if (below.empty()) return above.empty() ? "1" : above;
-  return (above.empty() ? "1" : above) + "/" + below;
-}
-
-Unit Unit::si() const { return Unit{dimension, 1.0, 0.0, si_name()}; }
-
-Unit parse_unit(std::string_view text) {
+/// As `parse_unit`, in its own words only.
+Unit parse_standard_words(std::string_view text) {
   const std::string_view whole = trim(text);
   Unit unit;
   unit.name = whole.empty() ? "1" : std::string(whole);
@@ -227,6 +202,52 @@ Unit parse_unit(std::string_view text) {
   return unit;
 }
 
+}  // namespace
+
+std::string Unit::si_name() const {
+  static constexpr std::array<const char*, kDimensions> kBase{"m", "kg", "s", "K", "A", "rad"};
+  // A moment and an energy have the same dimension; here it is nearly always a moment, and no one reads a moment in
+  // joules.
+  static const std::map<Dimension, std::string> derived{{kForce, "N"},        {kPressure, "Pa"}, {kEnergy, "N m"},
+                                                        {kPower, "W"},        {kVoltage, "V"},   {kFrequency, "Hz"},
+                                                        {kMagneticField, "T"}};
+  if (const auto found = derived.find(dimension); found != derived.end()) return found->second;
+  // Metre before kilogram reads oddly in "m^2 kg", so mass is written first.
+  static constexpr std::array<std::size_t, kDimensions> kOrder{1, 0, 5, 3, 4, 2};
+  std::string above;
+  std::string below;
+  for (const std::size_t i : kOrder) {
+    const int power = dimension[i];
+    if (power == 0) continue;
+    std::string& side = power > 0 ? above : below;
+    if (!side.empty()) side += power > 0 ? " " : "/";
+    side += kBase[i];
+    if (power > 1 || power < -1) side += fmt::format("^{}", power > 0 ? power : -power);
+  }
+  if (below.empty()) return above.empty() ? "1" : above;
+  return (above.empty() ? "1" : above) + "/" + below;
+}
+
+Unit Unit::si() const { return Unit{dimension, 1.0, 0.0, si_name()}; }
+
+Unit parse_unit(std::string_view text) {
+  constexpr std::size_t kLongest = 40;
+  try {
+    return parse_standard_words(text);
+  } catch (const InputError&) {
+    const std::string words = text.size() > kLongest ? std::string(text) : in_standard_words(text);
+    if (words == text) throw;
+    try {
+      Unit unit = parse_standard_words(words);
+      unit.name = std::string(trim(text));
+      return unit;
+    } catch (const InputError&) {
+      // What is wrong is said of what was written.
+    }
+    throw;
+  }
+}
+
 std::vector<Unit> units_like(const Unit& like) {
   // The common names of what has several, and compounds, before the names of the table.
   static const std::vector<Unit> all = [] {
@@ -247,7 +268,7 @@ std::vector<Unit> units_like(const Unit& like) {
 }
 
 Unit parse_unit_like(std::string_view text, const Unit& expected) {
-  Unit unit = parse_unit(text);
+  Unit unit = parse_unit(unit_meant(text, expected));
   if (!unit.same_dimension(expected)) {
     throw InputError("", fmt::format("unit '{}' is {}[{}], expected {}[{}]", unit.name, kind_of(unit), unit.si_name(),
                                      kind_of(expected), expected.si_name()));

@@ -19,7 +19,16 @@ TEST(UnitWords, ReadsUnitsAsPeopleWriteThem) {
                                                        {"m/s/s", "m/s^2"},
                                                        {"knots", "kt"},
                                                        {"kts", "kt"},
-                                                       {"KM/H", ""},
+                                                       {"KM/H", "km/h"},
+                                                       {"KIAS", "kt"},
+                                                       {"RPM", "rpm"},
+                                                       {"lbs", "lb"},
+                                                       {"PSI", "psi"},
+                                                       {"inch Hg", "inHg"},
+                                                       {"deg F", "degF"},
+                                                       {"ft/min", "ft/min"},
+                                                       {"fpm", "ft/min"},
+                                                       {"ft msl", "ft"},
                                                        {"km/hr", "km/h"},
                                                        {"g's", "g"},
                                                        {"G", "G"},
@@ -49,6 +58,13 @@ TEST(UnitWords, ReadsUnitsAsPeopleWriteThem) {
 TEST(UnitWords, RefusesWhatIsNoUnitOrMeansTwoThings) {
   for (const char* text : {"", "filtered", "rps", "m//s", "C", "d", "UTC"}) EXPECT_FALSE(unit_in_words(text)) << text;
   EXPECT_FALSE(unit_in_words(std::string(100, 'm')));
+}
+
+TEST(UnitWords, TakeGByTheNameOfTheColumn) {
+  EXPECT_EQ(unit_of_column("G", "NormAc"), "g");
+  EXPECT_EQ(unit_of_column("G", "MagX"), "G");
+  EXPECT_EQ(unit_of_column("mG", "MagX"), "mG");
+  EXPECT_EQ(unit_of_column("kts", "TAS"), "kt");
 }
 
 }  // namespace

@@ -11,4 +11,8 @@ namespace veridyn::io {
 /// for words with two meanings ("rps": radians or revolutions). Does not throw.
 [[nodiscard]] std::optional<std::string> unit_in_words(std::string_view text);
 
+/// The unit of the numbers of a column of this name, in a file by others. "G" is gravity there, unless the name is that
+/// of a compass ("Mag X [G]").
+[[nodiscard]] std::optional<std::string> unit_of_column(std::string_view text, std::string_view name);
+
 }  // namespace veridyn::io
