@@ -13,17 +13,23 @@ const io::LogFormat& fuzzed_format() {
   std::abort();
 }
 
-/// How a study may ask for a table, by a first byte below 8; any other byte belongs to the log, read by content alone.
+/// How a study may ask for a table, by a first byte below 9 or the vertical tabulator; any other byte belongs to the
+/// log, read by content alone.
 io::TableOptions take_options(std::string_view& bytes) {
   io::TableOptions options;
-  const unsigned how = bytes.empty() ? 8U : static_cast<unsigned char>(bytes.front());
-  if (how >= 8) return options;
+  const unsigned how = bytes.empty() ? 9U : static_cast<unsigned char>(bytes.front());
+  if (how >= 9 && how != 11) return options;  // 9 and 10 are a tabulator and a line end
   bytes.remove_prefix(1);
   if (how < 5) options.delimiter = ",;\t  "[how];
   if (how == 4) options.decimal = ',';
   if (how == 5) options.rate = 50.0;
   if (how == 6) options.columns = {"time", "p[deg/s]", "q"};
   if (how == 7) options.part = 2;
+  if (how == 8) options.skip_lines = 2;
+  if (how == 11) {
+    options.variable = "fdata";
+    options.part = 2;
+  }
   return options;
 }
 

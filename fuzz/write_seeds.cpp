@@ -33,6 +33,12 @@ int main(int count, char** arguments) {
     std::string twice = "time,x\n";
     for (int i = 0; i < 24; ++i) twice += std::to_string(i % 12) + ",1\n";
     write("csv", "\x07" + twice, "part");
+    // Layouts of others: metadata, names and units in comments, columns between bars.
+    write("csv", "\"Product\",\"x\"\n\"acc\",2\nloopIteration,time,p\n0,1000,1\n1,2000,2\n2,3000,3\n", "metadata");
+    write("csv", "#t\tV\n#double\tfloat\n#s\tkm/h\n0\t1\n1\t2\n", "comments");
+    write("csv", "\n _totl,_time | __P,rad/s | \n 0.0 | 1.0 | \n 0.5 | 2.0 | \n", "bars");
+    write("csv", "#a\n#hh:mm:ss, deg, G\n Time, Pitch, Az\n , 1, 1\n10:00:00, 1, 1\n10:00:01, 2, 1\n", "comment_units");
+    write("csv", "\x08title\nremark\ntime,x\n0,1\n1,2\n", "skip_lines");
     write("csv_folder",
           "timestamp,q[0]\n1000000,1\n1020000,1\n" + std::string(1, '\0') + "timestamp,p\n1000000,7\n1200000,8\n");
     write("csv_folder", "\x02" + twice + '\0' + twice + '\0' + "time,x\n0,1\n1,2\n", "restart");

@@ -63,6 +63,10 @@ TEST_F(StudyData, SaysHowATableIsWritten) {
   EXPECT_THAT(message_of([&] { (void)read("file = 'run.txt'\ndecimal = ';'\n"); }), HasSubstr("data.decimal"));
   EXPECT_THAT(message_of([&] { (void)read("file = 'run.txt'\npart = 0\n"); }),
               HasSubstr("data.part: = 0 must be from 1 to 1000000"));
+  write("titled.txt", "a,b\nc,d\ntime|x\n0|1\n1|2\n");
+  EXPECT_THAT(read("file = 'titled.txt'\nskip_lines = 2\ndelimiter = 'bar'\n").at("x").value, ElementsAre(1.0, 2.0));
+  EXPECT_THAT(message_of([&] { (void)read("file = 'titled.txt'\nskip_lines = 9\n"); }),
+              HasSubstr("titled.txt: has only 5 lines, skip_lines leaves nothing of it"));
   std::string twice = "time,x\n";
   for (int k = 0; k < 2; ++k)
     for (int i = 0; i < 10 + k; ++i) twice += std::to_string(0.1 * i) + "," + std::to_string(k) + "\n";

@@ -141,7 +141,11 @@ const KeyTable<RecordingKeys>& RecordingKeys::keys() {
           .count("part", csv(&T::part), 1, 1'000'000, "of a file that holds several recordings")
           .otherwise("all, or the longest of a table whose clock restarts")
           .texts("columns", csv(&T::columns), "names, `name` or `name[unit]`, of the columns of a table without header")
-          .choice("delimiter", csv(&T::delimiter), {{"comma", ','}, {"semicolon", ';'}, {"tab", '\t'}, {"blank", ' '}},
+          .text("variable", csv(&T::variable), "of a MATLAB file, the matrix whose columns are the channels")
+          .otherwise("SIDPAC's `fdata`, or by content")
+          .count("skip_lines", csv(&T::skip_lines), 0, 1'000'000, "at the top of a table, which are not looked at")
+          .choice("delimiter", csv(&T::delimiter),
+                  {{"comma", ','}, {"semicolon", ';'}, {"tab", '\t'}, {"blank", ' '}, {"bar", '|'}},
                   "between the cells of a table")
           .otherwise("as its rows show")
           .choice("decimal", csv(&T::decimal), {{"point", '.'}, {"comma", ','}}, "of the numbers of a table")

@@ -36,6 +36,83 @@ TEST(Mat, NamesTheColumnsOfAMatrix) {
             "small.mat: `columns` names 2 columns, and no matrices have as many: it holds table (2 x 3)");
 }
 
+/// An array of doubles as a level 5 file has it.
+std::string array_of(const std::string& name, const std::vector<std::int32_t>& extents,
+                     const std::vector<double>& numbers) {
+  const auto element = [](std::uint32_t type, std::string data) {
+    const std::string tag = testing::pack(type, static_cast<std::uint32_t>(data.size()));
+    data.resize((data.size() + 7) / 8 * 8, '\0');
+    return tag + data;
+  };
+  std::string shape, values;
+  for (const std::int32_t extent : extents) shape += testing::pack(extent);
+  for (const double number : numbers) values += testing::pack(number);
+  return element(14, element(6, testing::pack(std::uint32_t{6}, std::uint32_t{0})) + element(5, shape) +
+                         element(1, name) + element(9, values));
+}
+
+/// SIDPAC's array of so many segments: V is 100 ft/s in all, alpha the number of its segment [deg].
+std::string fdata_of(const std::string& name, std::size_t segments) {
+  constexpr std::size_t kRows = 4, kColumns = 90;
+  std::vector<double> numbers(kRows * kColumns * segments);
+  for (std::size_t s = 0; s < segments; ++s) {
+    for (std::size_t row = 0; row < kRows; ++row) {
+      double* const first = &numbers[s * kRows * kColumns + row];
+      first[0] = 0.02 * static_cast<double>(row);
+      first[kRows] = 100.0;
+      first[3 * kRows] = static_cast<double>(s + 1);
+      first[76 * kRows] = 174.0;
+    }
+  }
+  std::vector<std::int32_t> extents{kRows, kColumns};
+  if (segments > 1) extents.push_back(static_cast<std::int32_t>(segments));
+  return array_of(name, extents, numbers);
+}
+
+// Columns as in Klein and Morelli's SIDPAC: 1 time, 2 airspeed in ft/s, 4 angle of attack in deg, 77 wing area.
+TEST(Mat, KnowsTheArrayOfSidpacAndItsCopy) {
+  const std::string file = testing::small_mat().substr(0, 128) + fdata_of("fdata", 1) + fdata_of("fdatao", 1);
+  const Log log = read_mat(file, "sidpac.mat");
+  const Recording flight = to_recording(log);
+  EXPECT_THAT(flight.names(), ElementsAre("V", "alpha", "sarea"));  // zeros are what was not measured
+  EXPECT_NEAR(flight.at("V").value[0], 30.48, 1e-12);
+  EXPECT_NEAR(flight.at("alpha").value[0], std::numbers::pi / 180.0, 1e-15);
+  EXPECT_THAT(flight.at("V").times(), ElementsAre(0.0, 0.02, 0.04, 0.06));
+  EXPECT_THAT(log.damage.notes[1], HasSubstr("fdatao is not read; `variable = \"fdatao\"` in [data] takes it"));
+  EXPECT_EQ(to_recording(read_mat(file, "sidpac.mat", {.variable = "fdatao"})).names(), flight.names());
+  EXPECT_EQ(message_of([&] { (void)read_mat(file, "sidpac.mat", {.variable = "fdat"}); }),
+            "sidpac.mat: holds no matrix 'fdat', which `variable` names (did you mean 'fdata'?): it holds fdata (4 x "
+            "90), fdatao (4 x 90)");
+  std::vector<std::string> names(90, "x");
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] += std::to_string(i);
+  EXPECT_THAT(message_of([&] { (void)read_mat(file, "sidpac.mat", {.columns = names}); }),
+              HasSubstr("2 matrices have as many: it holds fdata (4 x 90), fdatao (4 x 90); say which, variable = "));
+}
+
+TEST(Mat, ReadsOneSegmentOfAnArrayOfThreeDimensions) {
+  const std::string file = testing::small_mat().substr(0, 128) + fdata_of("fdata", 3);
+  const Log first = read_mat(file, "segments.mat");
+  EXPECT_EQ(first.parts, 3U);
+  EXPECT_THAT(first.damage.notes,
+              ::testing::Contains("fdata has 3 segments; part 1 is read, `part = 2` in [data] takes another"));
+  const Recording third = to_recording(read_mat(file, "segments.mat", {.part = 3}));
+  EXPECT_NEAR(third.at("alpha").value[0], 3.0 * std::numbers::pi / 180.0, 1e-15);
+  EXPECT_EQ(message_of([&] { (void)read_mat(file, "segments.mat", {.part = 4}); }),
+            "segments.mat: has no part 4: fdata has 3 segments");
+  // Any such array, where its columns are named.
+  const std::string named = testing::small_mat().substr(0, 128) + array_of("z", {2, 2, 2}, {0, 1, 5, 6, 0, 2, 7, 8});
+  const Recording second =
+      to_recording(read_mat(named, "z.mat", {.columns = {"t[s]", "p"}, .variable = "z", .part = 2}));
+  EXPECT_THAT(second.at("p").value, ElementsAre(7.0, 8.0));
+  EXPECT_THAT(second.at("p").times(), ElementsAre(0.0, 2.0));
+  EXPECT_EQ(message_of([&] { (void)read_mat(named, "z.mat", {.variable = "z"}); }),
+            "z.mat: z has 2 columns; name them, columns = [\"time[s]\", ...] in [data]");
+  EXPECT_EQ(message_of([&] {
+              (void)read_mat(named, "z.mat", {.columns = {"t", "p", "q"}, .variable = "z"});
+            }),
+            "z.mat: `columns` names 3 columns, z has 2");
+}
+
 TEST(Mat, SaysWhatAFileHoldsWhereNothingIsASeries) {
   const std::string small = testing::small_mat();
   const std::size_t flight = 8 + static_cast<unsigned char>(small[132]) + 256U * static_cast<unsigned char>(small[133]);

@@ -11,6 +11,7 @@ TEST(CsvCells, GuessesTheDelimiterThatTheLineHoldsMostOf) {
   EXPECT_EQ(guess_delimiter("time;speed;note, with a comma"), ';');
   EXPECT_EQ(guess_delimiter("time\tspeed\tyaw"), '\t');
   EXPECT_EQ(guess_delimiter("time,speed"), ',');
+  EXPECT_EQ(guess_delimiter("_totl,_time | _Vind,_kias |"), '|');
   EXPECT_EQ(guess_delimiter("time"), ',');
 }
 

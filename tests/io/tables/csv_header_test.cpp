@@ -49,6 +49,12 @@ TEST(CsvHeader, KnowsARowOfUnits) {
   EXPECT_TRUE(row_of_units({"s", "fast"}).empty());
 }
 
+TEST(CsvHeader, KnowsARowOfUnitsAmongOtherWords) {
+  EXPECT_THAT(row_of_units_and_words({"hh:mm:ss", "deg", "G", "enum", "-"}), ElementsAre("", "deg", "G", "", ""));
+  EXPECT_TRUE(row_of_units_and_words({"time", "V", "p"}).empty());
+  EXPECT_TRUE(row_of_units_and_words({"s", "m", "1"}).empty());
+}
+
 TEST(CsvHeader, NumbersNamesThatAppearAgain) {
   std::vector<Header> headers{{"V", ""}, {"V(2)", ""}, {"V", ""}, {"V", ""}};
   EXPECT_THAT(number_repeated(headers), ElementsAre("V(3)", "V(4)"));

@@ -87,6 +87,122 @@ TEST(Csv, TakesUnitsFromARowOfTheirOwn) {
   EXPECT_EQ(refusal("time,mode\n0,s\n0,x,1\n"), "a.csv:3: more cells than the 2 of the header");
 }
 
+// Columns as Garmin's G1000 logs them; a header of its log stands in datui's documentation and others' converters.
+TEST(Csv, ReadsAGarminLogWithUnitsInACommentAndRowsBeforeItsClockIsSet) {
+  const char* text =
+      "#airframe_info, log_version=\"1.00\", airframe_name=\"Cessna 172S\",\n"
+      "#yyy-mm-dd, hh:mm:ss,   hh:mm,  ident,      degrees, ft Baro,  inch,     kt,    deg,      G,    rpm, enum\n"
+      "  Lcl Date, Lcl Time, UTCOfst, AtvWpt,     Latitude,    AltB, BaroA,    IAS,  Pitch, NormAc, E1 RPM, HSIS\n"
+      "          ,         ,        ,       ,             ,        ,      ,       ,   1.00,       ,       ,     \n"
+      "2026-09-02, 23:59:59,  -07:00,   KPDX,    45.500000,  1000.0, 29.92,  100.0,   2.00,   0.50, 2400.0,  GPS\n"
+      "2026-09-03, 00:00:00,  -07:00,   KPDX,    45.500000,  1000.0, 29.92,  100.0,   3.00,   0.50, 2400.0,  GPS\n";
+  const Recording log = read(text);
+  EXPECT_THAT(*log.at("Pitch").time, ElementsAre(86399.0, 86400.0));
+  EXPECT_NEAR(log.at("Pitch").value[0], 2.0 * std::numbers::pi / 180.0, 1e-15);
+  EXPECT_NEAR(log.at("IAS").value[0], 51.444444, 1e-6);
+  EXPECT_NEAR(log.at("NormAc").value[0], 4.903325, 1e-12);
+  EXPECT_NEAR(log.at("AltB").value[0], 304.8, 1e-12);
+  EXPECT_THAT(notes_of(text), ElementsAre("1 rows without a time were left out"));
+}
+
+// Long and short names as a GDU 460 (G3X) writes them.
+TEST(Csv, ReadsAGarminLogWithTwoRowsOfNames) {
+  const Recording log = read(
+      "#airframe_info,log_version=\"1.00\",product=\"GDU 460\"\n"
+      "Date (yyyy-mm-dd),Time (hh:mm:ss),GPS Velocity N (m/sec),True Airspeed (kt),Normal Acceleration (G),CAS Alert\n"
+      "Lcl Date,Lcl Time,,TAS,NormAc,\n"
+      "2026-09-02,14:47:56,10.5,100,1.0,\n2026-09-02,14:47:57,10.6,101,1.1,\n2026-09-02,14:47:58,10.6,101,1.1,\n");
+  EXPECT_THAT(log.at("GPS Velocity N").value, ElementsAre(10.5, 10.6, 10.6));
+  EXPECT_EQ(log.at("Normal Acceleration").unit.name, "m/s^2");
+  EXPECT_NEAR(log.at("True Airspeed").value[0], 51.444444, 1e-6);
+}
+
+// What Blackbox Explorer exports: lines of metadata ahead of the header.
+TEST(Csv, ReadsTheExportOfABlackboxBelowItsMetadata) {
+  std::string text =
+      "\"Product\",\"Blackbox flight data recorder by Nicholas Sherlock\"\n\"firmwareType\",3\n"
+      "\"Firmware revision\",\"Betaflight 4.5.1 (77d01ba3b) STM32H743\"\n\"rollPID\",\"45,80,40\"\n\"acc_1G\",2048\n"
+      "\"debug_mode\",\"\"\n\"loopIteration\",\"time\",\"gyroADC[0]\",\"heading[0]\"\n";
+  for (int i = 0; i < 10; ++i) text += std::to_string(i) + "," + std::to_string(1000000 + 1000 * i) + ",90,NaN\n";
+  const Recording log = read(text);
+  EXPECT_EQ(log.at("gyroADC[0]").size(), 10U);
+  // Thousand apart would be 1 Hz in ms too; this recorder counts microseconds.
+  EXPECT_NEAR(log.at("gyroADC[0]").times()[1], 1.001, 1e-12);
+  EXPECT_EQ(log.information.at("acc_1G"), "2048");
+  EXPECT_THAT(notes_of(text), Contains("the names of the columns are in line 7; what stands above describes them"));
+}
+
+// ASCII as CarMaker writes it: names, types and units, each in a comment.
+TEST(Csv, ReadsNamesTypesAndUnitsInThreeComments) {
+  const char* text = "#Time\tCar.vx\tCar.YawRate\n#double\tfloat\tfloat\n#s\tkm/h\tdeg/s\n0\t36\t180\n0.5\t72\t90\n";
+  const Recording log = read(text);
+  EXPECT_THAT(log.at("Car.vx").value, ElementsAre(10.0, 20.0));
+  EXPECT_NEAR(log.at("Car.YawRate").value[0], std::numbers::pi, 1e-15);
+}
+
+// Data.txt of X-Plane, whose names are twice five letters.
+TEST(Csv, ReadsColumnsBetweenBars) {
+  const Recording log = read(
+      "\n   _totl,_time |    _Vind,_kias |    Vtrue,_ktas |    pitch,__deg |      __P,rad/s |    Gload,norml | \n"
+      "        0.00000 |      100.00000 |      110.00000 |      180.00000 |        0.50000 |        1.00000 | \n"
+      "        0.50000 |      100.00000 |      110.00000 |      180.00000 |        0.50000 |        1.00000 | \n");
+  EXPECT_THAT(*log.at("_Vind,_kias").time, ElementsAre(0.0, 0.5));
+  EXPECT_NEAR(log.at("_Vind,_kias").value[0], 51.444444, 1e-6);
+  EXPECT_NEAR(log.at("pitch,__deg").value[0], std::numbers::pi, 1e-15);
+  EXPECT_EQ(log.at("__P,rad/s").unit.name, "rad/s");
+  EXPECT_NEAR(log.at("Gload,norml").value[0], 9.80665, 1e-12);
+}
+
+TEST(Csv, FindsAHeaderBelowLinesOfAnyForm) {
+  const char* text =
+      "FLIGHT 12 OF AIRCRAFT D-ABCD\nPilot: Smith\nNUMBER OF CHANNELS 3\n\ntime TAS NZ\n sec kts G\n"
+      "0.0 100 1\n0.1 100 1\n0.2 100 1\n";
+  const Recording log = read(text);
+  EXPECT_NEAR(log.at("TAS").value[2], 51.444444, 1e-6);
+  EXPECT_NEAR(log.at("NZ").value[0], 9.80665, 1e-12);
+  EXPECT_EQ(log.information.at("Pilot"), "Smith");
+  const Recording same = read(text, {.skip_lines = 4});
+  EXPECT_THAT(same.at("TAS").value, ::testing::ElementsAreArray(log.at("TAS").value));
+  EXPECT_EQ(refusal("a,b\n0,1\n", {.skip_lines = 3}), "a.csv: has only 2 lines, skip_lines leaves nothing of it");
+  EXPECT_EQ(refusal("time,a\n0,1\n1,hello\n", {.skip_lines = 1}).substr(0, 29), "a.csv:2: no time column found");
+  // No header is made of rows that are longer than the first.
+  EXPECT_EQ(refusal("time,a\n0,1,2\n1,2,3\n2,3,4\n3,4,5\n"), "a.csv:2: more cells than the 2 of the header");
+}
+
+TEST(Csv, TakesAUnitInEveryPlaceWherePeopleWriteIt) {
+  const Recording comma = read("\"Time, sec\",\"TAS, knots\",\"p, deg/sec\"\n0,100,180\n1,100,180\n");
+  EXPECT_NEAR(comma.at("TAS").value[0], 51.444444, 1e-6);
+  EXPECT_NEAR(comma.at("p").value[0], std::numbers::pi, 1e-15);
+  const Recording slash = read("Time/s TAS/(m/s) AOA/deg p/(deg/s)\n0 10 180 1\n1 10 180 1\n");
+  EXPECT_THAT(slash.names(), ElementsAre("TAS", "AOA", "p"));
+  EXPECT_NEAR(slash.at("AOA").value[0], std::numbers::pi, 1e-15);
+  EXPECT_EQ(slash.at("p").unit.name, "rad/s");
+  // What is no unit stays in the name.
+  EXPECT_THAT(read("time,L/D,\"x, y\"\n0,1,2\n").names(), ElementsAre("L/D", "x, y"));
+}
+
+TEST(Csv, TakesGForGravityButNotOfACompass) {
+  const Recording log = read("time (s),Az [G],Mag X [G]\n0,1,0.5\n1,1,0.5\n");
+  EXPECT_NEAR(log.at("Az").value[0], 9.80665, 1e-12);
+  EXPECT_NEAR(log.at("Mag X").value[0], 0.5e-4, 1e-18);
+}
+
+TEST(Csv, TakesNoTemperatureForAClock) {
+  EXPECT_EQ(read("TimeUS,T,p\n0,25,1\n20000,25,1\n40000,25,1\n").at("T").value[0], 25.0);
+  EXPECT_EQ(read("timestamp,T,p\n0,25,1\n20000,25,1\n40000,25,1\n").at("p").times()[1], 0.02);
+  EXPECT_THAT(read("T,p\n0,1\n0.5,1\n").names(), ElementsAre("p"));
+}
+
+TEST(Csv, KnowsUnitsThatJsbsimHasWithoutSayingSo) {
+  const Recording log = read(
+      "Time,P (deg/s),V_{Total} (ft/s),BodyAccel_Z,Rho (slugs/ft^3),Temperature (R),L_{Aero} (ft-lbs)\n"
+      "0,180,100,-32.174,0.0023769,518.67,1\n0.02,180,100,-32.174,0.0023769,518.67,1\n");
+  EXPECT_NEAR(log.at("BodyAccel_Z").value[0], -9.80665, 1e-4);
+  EXPECT_NEAR(log.at("Rho").value[0], 1.225, 1e-4);
+  EXPECT_NEAR(log.at("Temperature (R)").value[0], 288.15, 1e-10);
+  EXPECT_NEAR(log.at("L_{Aero}").value[0], 1.3558179, 1e-7);
+}
+
 TEST(Csv, ReadsADecimalCommaAndSaysSo) {
   const char* text = "Zeit;V\n0,00;20,5\n0,02;21\n";
   EXPECT_THAT(read(text).at("V").value, ElementsAre(20.5, 21.0));
@@ -160,7 +276,7 @@ TEST(Csv, RefusesWithFileLineAndColumn) {
   EXPECT_EQ(refusal("time[s],a[1],a[m]\n0,1,2\n"), "a.csv:1: column 'a' appears twice");
   EXPECT_EQ(refusal("time[s],,b[1]\n0,1,2\n"), "a.csv:1: column 2: has no name");
   EXPECT_EQ(refusal("time[s]\n0\n"), "a.csv:1: there is no column but the time");
-  EXPECT_THAT(refusal("time[s],a[metre]\n0,1\n"), HasSubstr("a.csv:1: column 'a': unknown unit 'metre'"));
+  EXPECT_THAT(refusal("time[s],a[parsek]\n0,1\n"), HasSubstr("a.csv:1: column 'a': unknown unit 'parsek'"));
   EXPECT_THAT(refusal("time[m],a[1]\n0,1\n"), HasSubstr("a.csv:1: column 'time': unit 'm' is a length [m]"));
   EXPECT_EQ(refusal("# frame: up\ntime[s],a[1]\n"), "a.csv:1: frame is 'up', expected frd or flu");
   EXPECT_EQ(refusal("alpha,CL\n0,1\n"),

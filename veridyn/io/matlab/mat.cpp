@@ -9,11 +9,13 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/core/nearest.hpp"
 #include "veridyn/io/dataflash/dataflash_schema.hpp"
 #include "veridyn/io/log/mapped_file.hpp"
 #include "veridyn/io/log/time_stamps.hpp"
 #include "veridyn/io/matlab/mat_value.hpp"
 #include "veridyn/io/tables/csv_header.hpp"
+#include "veridyn/io/tables/known_tables.hpp"
 #include "veridyn/io/tables/time_column.hpp"
 #include "veridyn/io/tables/unit_words.hpp"
 
@@ -25,6 +27,11 @@ constexpr std::string_view kMatlab73 = "MATLAB 7.3 MAT-file";
 bool is_vector(const MatValue& value) {
   return value.kind == MatValue::Kind::kNumbers && value.numbers.size() > 1 &&
          std::count_if(value.extents.begin(), value.extents.end(), [](std::size_t n) { return n != 1; }) == 1;
+}
+
+/// Rows and columns of equal segments one behind the other.
+bool is_segments(const MatValue& value) {
+  return value.kind == MatValue::Kind::kNumbers && value.extents.size() == 3 && value.numbers.size() > 1;
 }
 
 bool is_matrix(const MatValue& value) {
@@ -66,8 +73,12 @@ class Builder {
   }
 
   void finish() {
-    if (!options_.columns.empty()) {
-      take_named_columns();
+    if (!options_.columns.empty() || !options_.variable.empty()) {
+      take_named_columns(named_matrix());
+      return;
+    }
+    if (MatValue* fdata = sidpac_array()) {
+      take_named_columns(*fdata);
       return;
     }
     take_labelled();
@@ -116,30 +127,94 @@ class Builder {
     return fmt::format("{} ({})", path, fmt::join(value.extents, " x "));
   }
 
-  /// The matrix with as many columns as the options name.
-  void take_named_columns() {
+  /// SIDPAC's array, which its workspaces hold as `fdata`, and as `fdatao` before it was changed.
+  MatValue* sidpac_array() {
+    const auto fdata = std::ranges::find(file_.items, "fdata", &MatValue::name);
+    if (fdata == file_.items.end() || !(is_matrix(*fdata) || is_segments(*fdata))) return nullptr;
+    if (fdata->extents[0] < 2 || internal::sidpac_columns(fdata->extents[1]).empty()) return nullptr;
+    log_.damage.notes.emplace_back(
+        "fdata is taken for SIDPAC's array, whose columns have names and units; `columns` in [data] gives others");
+    if (std::ranges::find(file_.items, "fdatao", &MatValue::name) != file_.items.end())
+      log_.damage.notes.emplace_back(
+          "fdatao is not read; `variable = \"fdatao\"` in [data] takes it in place of fdata");
+    return &*fdata;
+  }
+
+  /// The matrix that the options name, or with as many columns as they name.
+  MatValue& named_matrix() {
     const std::size_t count = options_.columns.size();
     std::vector<MatValue*> fitting;
+    std::vector<std::string> names;
     for (MatValue& value : file_.items) {
-      if (value.kind == MatValue::Kind::kNumbers) held_.push_back(in_words(value.name, value));
-      if (is_matrix(value) && value.extents[1] == count && value.extents[0] > 1) fitting.push_back(&value);
+      if (value.kind != MatValue::Kind::kNumbers) continue;
+      held_.push_back(in_words(value.name, value));
+      names.push_back(value.name);
+      const bool table = (is_matrix(value) || is_segments(value)) && value.extents[0] > 1;
+      const bool asked = options_.variable.empty() ? value.extents.size() > 1 && value.extents[1] == count
+                                                   : value.name == options_.variable;
+      if (table && asked) fitting.push_back(&value);
+    }
+    const std::string holds = fmt::format("it holds {}", held_.empty() ? "no numbers" : held());
+    if (!options_.variable.empty() && fitting.empty()) {
+      throw InputError(log_.source, fmt::format("holds no matrix '{}', which `variable` names{}: {}", options_.variable,
+                                                suggestion(options_.variable, names), holds));
     }
     if (fitting.size() != 1) {
       throw InputError(log_.source,
-                       fmt::format("`columns` names {} columns, and {} matrices have as many: it holds {}", count,
-                                   fitting.empty() ? std::string("no") : std::to_string(fitting.size()),
-                                   held_.empty() ? "no numbers" : held()));
+                       fmt::format("`columns` names {} columns, and {} matrices have as many: {}{}", count,
+                                   fitting.empty() ? std::string("no") : std::to_string(fitting.size()), holds,
+                                   fitting.empty() ? std::string()
+                                                   : fmt::format("; say which, variable = \"{}\" in [data]",
+                                                                 fitting.front()->name)));
     }
-    MatValue& matrix = *fitting.front();
-    const std::size_t rows = matrix.extents[0];
+    return *fitting.front();
+  }
+
+  /// Names and units of a matrix: those that the options give, or SIDPAC's.
+  [[nodiscard]] std::vector<internal::Header> headers_of(const MatValue& matrix) const {
+    const std::size_t count = matrix.extents[1];
     std::vector<internal::Header> headers;
-    std::vector<std::string> names;
-    for (const std::string& column : options_.columns) {
+    for (const std::string& column : options_.columns)
       headers.push_back(internal::split_header(column, true, log_.source));
-      names.push_back(headers.back().name);
+    if (headers.empty()) headers = internal::sidpac_columns(count);
+    if (headers.empty()) {
+      throw InputError(log_.source, fmt::format("{} has {} columns; name them, columns = [\"time[s]\", ...] in [data]",
+                                                matrix.name, count));
     }
+    if (headers.size() != count) {
+      throw InputError(log_.source,
+                       fmt::format("`columns` names {} columns, {} has {}", headers.size(), matrix.name, count));
+    }
+    return headers;
+  }
+
+  /// The first row of the segment that is read, of a matrix of three dimensions that of the options, or the first.
+  std::size_t begin_of_segment(const MatValue& matrix) {
+    if (!is_segments(matrix)) return 0;
+    const std::size_t segments = matrix.extents[2];
+    const std::size_t part = std::max<std::size_t>(1, options_.part);
+    if (part > segments)
+      throw InputError(log_.source, fmt::format("has no part {}: {} has {} segments", part, matrix.name, segments));
+    log_.part = part;
+    log_.parts = segments;
+    if (segments > 1) {
+      log_.damage.notes.push_back(
+          fmt::format("{} has {} segments; part {} is read, `part = {}` in [data] takes another", matrix.name, segments,
+                      part, part == 1 ? 2 : 1));
+    }
+    return (part - 1) * matrix.extents[0] * matrix.extents[1];
+  }
+
+  /// The columns of a matrix are series.
+  void take_named_columns(MatValue& matrix) {
+    const std::vector<internal::Header> headers = headers_of(matrix);
+    const std::size_t count = headers.size();
+    const std::size_t segment = begin_of_segment(matrix);
+    const std::size_t rows = matrix.extents[0];
+    std::vector<std::string> names;
+    for (const internal::Header& header : headers) names.push_back(header.name);
     const auto column_of = [&](std::size_t k) {
-      const auto begin = matrix.numbers.begin() + signed_index(k * rows);
+      const auto begin = matrix.numbers.begin() + signed_index(segment + k * rows);
       return std::vector<double>(begin, begin + signed_index(rows));
     };
     std::optional<std::size_t> time;
@@ -154,8 +229,11 @@ class Builder {
     std::vector<std::vector<double>> columns;
     for (std::size_t k = 0; k < count; ++k) {
       if (time == k) continue;
+      std::vector<double> column = column_of(k);
+      // SIDPAC's array has zeros in place of what was not measured.
+      if (options_.columns.empty() && std::ranges::all_of(column, [](double x) { return x == 0.0; })) continue;
       fields.push_back({headers[k].name, headers[k].unit.empty() ? "1" : headers[k].unit, 1.0, {}, {}});
-      columns.push_back(column_of(k));
+      columns.push_back(std::move(column));
     }
     std::vector<double> stamps = time ? column_of(*time) : made_stamps(rows);
     if (time) to_seconds(headers[*time], stamps);
@@ -328,7 +406,7 @@ class Builder {
   /// In the words of `parse_unit`: "1" where none is given, or none that is known, which is noted.
   std::string unit_of(const MatValue& item) {
     if (item.unit.empty()) return "1";
-    if (const auto known = unit_in_words(item.unit)) return *known;
+    if (const auto known = unit_of_column(item.unit, item.name)) return *known;
     log_.damage.notes.push_back(fmt::format("the unit of column '{}' is not known: {}", item.name, item.unit));
     return "1";
   }

@@ -19,9 +19,9 @@ namespace veridyn::io {
 ///   as many rows gives one field a column, `q[0]`. Structs may lie in structs (`a.b.x`).
 /// - A matrix X with a cell array X_label of column names is one message of an ArduPilot log as its ground stations
 ///   export it; units come from the table of known messages.
-/// - Where the options give names of columns (SIDPAC's `fdata`), the matrix with as many columns is a table of them;
-/// the
-///   stamps are one of these, or made from a rate. With a rate alone, the arrays with the most rows are the series.
+/// - Where the options give names of columns, the matrix with as many columns, or the one that they name, is a table of
+///   them; the stamps are one of these, or made from a rate. With a rate alone, the arrays with the most rows are the
+///   series. SIDPAC's `fdata` needs no names. Of a matrix of rows x columns x segments one segment is read.
 /// - Other numeric arrays become fields of a topic without time, with their `shape`; texts become information. Where no
 ///   series was found, a note says what the file holds.
 /// - Tables and timetables of level 5 files are structs of their columns of numbers (`MatObjects`); for each other

@@ -15,8 +15,11 @@
 #include "veridyn/io/tables/csv_cells.hpp"
 #include "veridyn/io/tables/csv_header.hpp"
 #include "veridyn/io/tables/date_stamp.hpp"
+#include "veridyn/io/tables/known_tables.hpp"
 #include "veridyn/io/tables/plain_rows.hpp"
+#include "veridyn/io/tables/table_layout.hpp"
 #include "veridyn/io/tables/time_column.hpp"
+#include "veridyn/io/tables/unit_words.hpp"
 
 namespace veridyn::io {
 namespace {
@@ -65,17 +68,18 @@ class CsvParser {
  private:
   [[nodiscard]] std::string place(std::size_t line) const { return fmt::format("{}:{}", log_.source, line); }
 
-  void read_comment(std::string_view line) {
-    line = trimmed(line.substr(1));
+  void read_comment(const internal::TableLayout::Line& comment) {
+    const std::string_view line = trimmed(comment.text.substr(1));
     const std::size_t colon = line.find(':');
     if (colon == std::string_view::npos) return;
     const std::string key = lower(trimmed(line.substr(0, colon)));
+    if (key.find(',') != std::string::npos) return;  // cells, of which one has a colon
     const std::string value(trimmed(line.substr(colon + 1)));
     if (key == "frame") {
       if (value == "frd") log_.frame = Frame::kFrd;
       if (value == "flu") log_.frame = Frame::kFlu;
       if (value != "frd" && value != "flu") {
-        throw InputError(place(line_ + 1), fmt::format("frame is '{}', expected frd or flu", shown(value)));
+        throw InputError(place(comment.number), fmt::format("frame is '{}', expected frd or flu", shown(value)));
       }
     } else if (!key.empty()) {
       log_.information[internal::printable(key)] = internal::printable(value);
@@ -83,53 +87,25 @@ class CsvParser {
   }
 
   void read_header() {
-    std::string_view rest = bytes_;
-    std::string_view line;
-    std::vector<std::string_view> comments;
-    while (line.empty()) {
-      if (rest.empty()) throw InputError(log_.source, "no header: the file has only blank lines and comments");
-      const std::size_t stop = std::min(rest.find('\n'), rest.size());
-      line = trimmed(rest.substr(0, stop));
-      if (line.empty() || is_comment(line.front())) {
-        if (!line.empty()) {
-          read_comment(line);
-          comments.push_back(line);
-        }
-        line = {};
-        rest.remove_prefix(std::min(stop + 1, rest.size()));
-        ++line_;
-      }
-    }
-    for (const char c : line) {
-      const auto byte = static_cast<unsigned char>(c);
-      if (byte < 0x20 && c != '\t') throw InputError(place(line_ + 1), "not a CSV file: the first row is not text");
-    }
-    choose_style(line, rest);
-    CellReader reader(rest, style_);
-    std::vector<std::string> cells = first_row(reader);
-    header_line_ = line_ + 1;
+    internal::TableLayout layout = internal::find_layout(bytes_, options_, log_.source);
+    for (const internal::TableLayout::Line& comment : layout.comments) read_comment(comment);
+    describe(layout);
+    style_ = layout.style;
+    rows_ = layout.rows;
+    line_ = layout.lines;
+    header_line_ = layout.header_line;
+    if (layout.decimal_comma_found)
+      log_.damage.notes.emplace_back("numbers are read with a decimal comma; `decimal = \"point\"` in [data] does not");
     const bool named = !options_.columns.empty();
-    const bool headless = named || internal::holds_only_data(cells, style_.decimal_comma);
-    bool numbered = false;
-    if (named) {
-      cells = options_.columns;
-    } else if (headless) {
-      const std::size_t count = cells.size();
-      cells = names_in_comments(comments, count);
-      numbered = cells.empty();
-      for (std::size_t i = 0; numbered && i < count; ++i) cells.push_back(fmt::format("column_{}", i + 1));
-      if (numbered)
-        log_.damage.notes.push_back(fmt::format("there is no header: columns are called column_1 to column_{}", count));
+    std::vector<std::string> cells = named ? options_.columns : std::move(layout.names);
+    if (cells.empty()) {
+      for (std::size_t i = 0; i < layout.columns; ++i) cells.push_back(fmt::format("column_{}", i + 1));
+      log_.damage.notes.push_back(
+          fmt::format("there is no header: columns are called column_1 to column_{}", layout.columns));
     }
     our_own_ = !named && lower(cells.front()).rfind("time[", 0) == 0 && options_.time_column.empty();
-    if (headless) {
-      rows_ = rest;
-    } else {
-      line_ += reader.lines();
-      rows_ = std::string_view(reader.position(), at(bytes_.data() + bytes_.size() - reader.position()));
-    }
     name_columns(cells, named);
-    if (!headless && !our_own_) take_row_of_units();
+    if (!our_own_ && !named) add_units(layout.units);
     time_ = internal::choose_time(headers_, options_, rows_, style_, place(header_line_));
     if (!time_.note.empty()) log_.damage.notes.push_back(time_.note);
     if (headers_.size() < 2 && time_.column != TimeChoice::kNone)
@@ -139,41 +115,28 @@ class CsvParser {
 
   static bool is_comment(char first) { return first == '#' || first == '%'; }
 
-  void choose_style(std::string_view line, std::string_view rest) {
-    style_.delimiter = options_.delimiter != '\0' ? options_.delimiter : internal::guess_delimiter(line);
-    const bool found = options_.decimal == '\0' && internal::has_decimal_comma(rest, style_.delimiter);
-    style_.decimal_comma = found || options_.decimal == ',';
-    if (found)
-      log_.damage.notes.emplace_back("numbers are read with a decimal comma; `decimal = \"point\"` in [data] does not");
-  }
-
-  [[nodiscard]] std::vector<std::string> first_row(CellReader& reader) const {
-    if (style_.delimiter == ' ') {
-      std::vector<std::string> names = internal::blank_separated(reader.line());
-      if (names.empty()) names.emplace_back();  // a row of quotes
-      return names;
-    }
-    std::vector<std::string> cells;
-    do {
-      cells.push_back(reader.text());
-    } while (!reader.last_cell_of_row() && !reader.at_end());
-    if (cells.size() > 1 && cells.back().empty()) cells.pop_back();
-    return cells;
-  }
-
-  /// The last comment that has a name for each of `count` columns.
-  [[nodiscard]] std::vector<std::string> names_in_comments(const std::vector<std::string_view>& comments,
-                                                           std::size_t count) const {
-    constexpr std::ptrdiff_t kLinesLookedAt = 20;
-    const auto last = comments.rbegin();
-    for (auto line = last; line != comments.rend() && line - last < kLinesLookedAt; ++line) {
-      const std::size_t begin = std::min(line->find_first_not_of("#% \t"), line->size());
-      for (const char delimiter : {style_.delimiter, ',', ';', '\t', ' '}) {
-        std::vector<std::string> cells = internal::cells_of(line->substr(begin), delimiter);
-        if (cells.size() == count && !internal::holds_only_data(cells, style_.decimal_comma)) return cells;
+  /// Lines ahead of the table: "key: value", or a name and its value as two cells.
+  void describe(const internal::TableLayout& layout) {
+    if (layout.descriptions.empty()) return;
+    log_.damage.notes.push_back(
+        fmt::format("the names of the columns are in line {}; what stands above describes them", layout.header_line));
+    for (const internal::TableLayout::Line& line : layout.descriptions) {
+      const std::vector<std::string> cells = internal::cells_of(line.text, internal::guess_delimiter(line.text));
+      if (cells.size() == 2 && !cells[0].empty() && !cells[0].ends_with(':')) {
+        log_.information[internal::printable(cells[0])] = internal::printable(cells[1]);
+      } else if (const std::size_t colon = line.text.find(':'); colon != std::string_view::npos && colon > 0) {
+        log_.information[internal::printable(trimmed(line.text.substr(0, colon)))] =
+            internal::printable(trimmed(line.text.substr(colon + 1)));
       }
     }
-    return {};
+  }
+
+  /// Units that stand elsewhere than after the names: in a row of their own, or with whoever writes such a table.
+  void add_units(const std::vector<std::string>& units) {
+    for (std::size_t i = 0; i < std::min(units.size(), headers_.size()); ++i)
+      if (headers_[i].unit.empty() && !units[i].empty())
+        headers_[i].unit = unit_of_column(units[i], headers_[i].name).value_or("");
+    internal::add_known_units(headers_);
   }
 
   void name_columns(const std::vector<std::string>& cells, bool named) {
@@ -194,22 +157,11 @@ class CsvParser {
         fmt::format("names of columns appear again, and are numbered: {}", fmt::join(repeated, ", ")));
   }
 
-  /// Takes the units of a row below the header, where it holds nothing else.
-  void take_row_of_units() {
-    CellReader reader(rows_, style_);
-    std::vector<std::string> cells = first_row(reader);
-    cells.resize(std::max(cells.size(), headers_.size()));
-    const std::vector<std::string> units = internal::row_of_units(cells);
-    if (units.size() != headers_.size()) return;
-    for (std::size_t i = 0; i < units.size(); ++i)
-      if (headers_[i].unit.empty()) headers_[i].unit = units[i];
-    line_ += reader.lines();
-    rows_.remove_prefix(at(reader.position() - rows_.data()));
-  }
-
-  /// Seconds since midnight of the first stamp's day, or of a duration; missing in the cell at which the file ends.
+  /// Seconds since midnight of the first stamp's day, or of a duration; missing where there is none (a clock that waits
+  /// for the satellites) and in the cell at which the file ends.
   double read_text_stamp(CellReader& reader) {
     const std::string cell = reader.text();
+    if (cell.empty()) return kMissing;
     const auto stamp = internal::parse_text_stamp(cell);
     if (!stamp || (stamp_kind_ && stamp->kind != *stamp_kind_)) {
       if (reader.at_end() && !reader.row_has_newline()) return kMissing;
@@ -330,6 +282,11 @@ class CsvParser {
         throw InputError(place(row_line_), extra ? fmt::format("more cells than the {} of {}", count, names)
                                                  : fmt::format("{} cells, {} has {}", cells, names, count));
       }
+      if (time_.texts && std::isnan(columns_[time_.column].numbers.back())) {
+        drop_row(count);
+        ++without_time_;
+        continue;
+      }
       ++row_count_;
       if (time_.column == TimeChoice::kNone) continue;
       double& stamp = columns_[time_.column].numbers.back();
@@ -377,7 +334,8 @@ class CsvParser {
     row_count_ = parts[read].end - parts[read].begin;
   }
 
-  void drop_cut_row(std::size_t cells) {
+  /// Takes off the cells of a row that does not count.
+  void drop_row(std::size_t cells) {
     for (std::size_t i = 0; i < cells; ++i) {
       if (columns_[i].kind == Growing::Kind::kText) {
         columns_[i].texts.resize(row_count_);
@@ -385,6 +343,10 @@ class CsvParser {
         columns_[i].numbers.resize(row_count_);
       }
     }
+  }
+
+  void drop_cut_row(std::size_t cells) {
+    drop_row(cells);
     ++log_.damage.records_lost;
     log_.damage.notes.push_back(
         fmt::format("line {} is cut ({} of {} cells) and was left out", row_line_, cells, headers_.size()));
@@ -392,6 +354,8 @@ class CsvParser {
 
   Log finish() {
     keep_one_part();
+    if (without_time_ > 0 && row_count_ > 0)
+      log_.damage.notes.push_back(fmt::format("{} rows without a time were left out", without_time_));
     if (row_count_ == 0) throw InputError(log_.source, "there is a header but not one row of data");
     LogTopic topic;
     std::vector<std::string> empty;
@@ -447,6 +411,7 @@ class CsvParser {
   std::size_t row_line_ = 0;
   std::size_t recounted_ = 0;
   std::size_t row_count_ = 0;
+  std::size_t without_time_ = 0;
 };
 
 }  // namespace

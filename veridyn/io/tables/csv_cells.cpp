@@ -15,7 +15,7 @@ namespace veridyn::io::internal {
 char guess_delimiter(std::string_view line) {
   char best = ',';
   std::ptrdiff_t most = 0;
-  for (const char candidate : {',', ';', '\t'}) {
+  for (const char candidate : {'|', ',', ';', '\t'}) {
     const auto count = std::count(line.begin(), line.end(), candidate);
     if (count > most) {
       most = count;

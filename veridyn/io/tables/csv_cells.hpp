@@ -19,7 +19,8 @@ struct CellStyle {
   bool decimal_comma = false;  ///< "0,5" is a half
 };
 
-/// Comma, semicolon or tabulator, whichever the line holds most of; a blank where it holds none of them but blanks.
+/// Bar, comma, semicolon or tabulator, whichever the line holds most of; a blank where it holds none of them but
+/// blanks.
 [[nodiscard]] char guess_delimiter(std::string_view line);
 /// The number that a cell stands for which is no plain one: empty, NA and the like are missing, true is 1; infinite
 /// ones are missing and set `infinite`. Nothing for other text.

@@ -20,12 +20,37 @@ bool is_digits(std::string_view text) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
+/// "Time, sec", "pitch,__deg", "V/(m/s)": a unit after the last comma, or the first slash that ends a name.
+Header split_at_sign(const std::string& cell) {
+  const Header whole{printable(cell), ""};
+  if (const std::size_t comma = cell.rfind(','); comma != std::string::npos && comma > 0) {
+    std::string_view text = std::string_view(cell).substr(comma + 1);
+    const bool apart = text.starts_with(' ');
+    while (!text.empty() && (text.front() == '_' || text.front() == ' ')) text.remove_prefix(1);
+    const std::string name = printable(trimmed(std::string_view(cell).substr(0, comma)));
+    const auto unit = is_digits(text) ? std::nullopt : unit_of_column(text, name);
+    if (unit) return {apart ? name : whole.name, *unit};
+    return whole;
+  }
+  // "F/N": a name that is a unit itself ("deg/s") is a quotient of two.
+  const std::size_t slash = cell.find('/');
+  if (slash == std::string::npos || slash == 0) return whole;
+  const std::string name = printable(trimmed(std::string_view(cell).substr(0, slash)));
+  std::string_view text = trimmed(std::string_view(cell).substr(slash + 1));
+  if (text.size() > 2 && text.front() == '(' && text.back() == ')') text = text.substr(1, text.size() - 2);
+  if (unit_in_words(name) || is_digits(text)) return whole;
+  const auto unit = unit_of_column(text, name);
+  return unit ? Header{name, *unit} : whole;
+}
+
 }  // namespace
 
 Header split_header(const std::string& cell, bool our_own, const std::string& place) {
   Header header{printable(cell), ""};
   const bool round = !our_own && cell.ends_with(')');
-  if (!round && !cell.ends_with(']')) return header;
+  if (!our_own && (cell.find("/(") != std::string::npos || cell.find("/ (") != std::string::npos))
+    return split_at_sign(cell);
+  if (!round && !cell.ends_with(']')) return our_own ? header : split_at_sign(cell);
   const std::size_t open = cell.rfind(round ? '(' : '[');
   if (open == std::string::npos || open == 0) return header;
   const std::string unit = cell.substr(open + 1, cell.size() - open - 2);
@@ -40,7 +65,7 @@ Header split_header(const std::string& cell, bool our_own, const std::string& pl
   }
   if (unit.empty() && !round) return {name, "1"};
   // "control[3]" is an element, "V(2)" the second of two.
-  const auto known = is_digits(unit) ? std::nullopt : unit_in_words(unit);
+  const auto known = is_digits(unit) ? std::nullopt : unit_of_column(unit, name);
   return known ? Header{name, *known} : header;
 }
 
@@ -60,7 +85,7 @@ std::vector<std::string> blank_separated(std::string_view line) {
   std::vector<std::string> cells;
   while (!reader.at_end()) {
     std::string cell = reader.text();
-    const bool opens = cell.starts_with('(') || cell.starts_with('[');
+    const bool opens = cell.starts_with('(') || cell.starts_with('[') || cell.starts_with("/(");
     const bool within = !cells.empty() && cells.back().find_first_of("([") != std::string::npos &&
                         cells.back().find_first_of(")]") == std::string::npos;
     if (!cells.empty() && (opens || within)) {
@@ -96,6 +121,23 @@ std::vector<std::string> row_of_units(const std::vector<std::string>& cells) {
     units.push_back(*unit);
   }
   if (!any) return {};
+  return units;
+}
+
+std::vector<std::string> row_of_units_and_words(const std::vector<std::string>& cells) {
+  std::vector<std::string> units;
+  std::size_t known = 0, filled = 0;
+  for (const std::string& cell : cells) {
+    std::string_view text = cell;
+    if (text.size() > 1 && (text.front() == '[' || text.front() == '(')) text = text.substr(1, text.size() - 2);
+    bool infinite = false;
+    const bool none = text.empty() || text == "-";
+    if (!none && unusual_number(text, infinite)) return {};
+    units.push_back(none ? "" : unit_in_words(text).value_or(""));
+    known += units.back().empty() ? 0U : 1U;
+    filled += none ? 0U : 1U;
+  }
+  if (known < 2 || 2 * known < filled) return {};
   return units;
 }
 

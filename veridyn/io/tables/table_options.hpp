@@ -13,6 +13,8 @@ struct TableOptions {
   std::string time_unit{};    ///< unit of the stamps ("ms"); empty: from header or name, else by how far rows are apart
   /// Names of the columns, `name` or `name[unit]`, of a table that has none; empty: the first row names them.
   std::vector<std::string> columns{};
+  std::string variable{};      ///< of a MATLAB file: the matrix whose columns are the channels; empty: found by content
+  std::size_t skip_lines = 0;  ///< of a text, before anything of it is looked at
   double rate = 0.0;      ///< [Hz] of the rows of a table that has no stamps: they are made; 0: there is a time column
   char delimiter = '\0';  ///< ' ' for blanks and tabulators; '\0': comma, semicolon or tabulator, else blanks
   char decimal = '\0';    ///< '.' or ','; '\0': a comma where cells hold one and it does not separate them

@@ -30,7 +30,6 @@ struct TimeName {
   std::string_view unit;
 };
 constexpr TimeName kTimeNames[] = {{"time", ""},
-                                   {"t", ""},
                                    {"t_s", "s"},
                                    {"time_s", "s"},
                                    {"seconds", "s"},
@@ -52,8 +51,14 @@ constexpr TimeName kTimeNames[] = {{"time", ""},
                                    {"millis", "ms"},
                                    {"timestamp", ""},
                                    {"time_stamp", ""},
+                                   // T is a temperature where any of these stands.
+                                   {"t", ""},
                                    {"times", ""},
                                    {"timestamps", ""},
+                                   {"session_time", "s"},
+                                   {"_totl,_time", "s"},
+                                   {"missn,_time", "s"},
+                                   {"_real,_time", "s"},
                                    {"elapsed_time", ""},
                                    {"time_elapsed", ""},
                                    {"elapsed", ""},
@@ -83,6 +88,8 @@ std::optional<std::size_t> column_of(std::span<const std::string> names, std::st
 std::pair<std::optional<std::size_t>, std::string> column_of_known_log(std::span<const std::string> names) {
   const auto has = [&](std::string_view name) { return column_of(names, name).has_value(); };
   if (has("timems") && has("week") && has("t")) return {column_of(names, "t"), "ms"};
+  // Betaflight's explorer and decoder.
+  if (has("loopiteration") && has("time")) return {column_of(names, "time"), "us"};
   if (has("date") && has("time") && has("millis")) return {column_of(names, "millis"), ""};
   return {std::nullopt, ""};
 }
@@ -102,6 +109,25 @@ std::optional<std::size_t> column_by_content(const std::vector<Header>& headers,
     }
   }
   return std::nullopt;
+}
+
+/// The first cell of each column that is not empty, among the first rows.
+std::vector<std::string> first_filled_cells(std::string_view rows, std::size_t columns, CellStyle style) {
+  std::vector<std::string> cells(columns);
+  CellReader reader(rows, style);
+  for (std::size_t row = 0; row < kRowsLookedAt && !reader.at_end(); ++row) {
+    if (const char first = *reader.position(); first == '\n' || first == '\r' || first == '#' || first == '%') {
+      static_cast<void>(reader.line());
+      continue;
+    }
+    for (std::size_t i = 0; !reader.at_end(); ++i) {
+      std::string cell = reader.text();
+      if (i < columns && cells[i].empty()) cells[i] = std::move(cell);
+      if (reader.last_cell_of_row()) break;
+    }
+    if (std::ranges::find(cells, "") == cells.end()) break;
+  }
+  return cells;
 }
 
 /// The median of what neighbours differ by, where they do; 0 where none does.
@@ -242,13 +268,8 @@ TimeChoice time_scale(const Header& header, const TableOptions& options, std::sp
 TimeChoice choose_time(const std::vector<Header>& headers, const TableOptions& options, std::string_view rows,
                        CellStyle style, const std::string& place) {
   if (options.rate > 0.0) return {};
-  std::vector<std::string> first_cells, names;
-  CellReader first(rows, style);
-  while (first_cells.size() < headers.size() && !first.at_end()) {
-    first_cells.push_back(first.text());
-    if (first.last_cell_of_row()) break;
-  }
-  first_cells.resize(headers.size());
+  const std::vector<std::string> first_cells = first_filled_cells(rows, headers.size(), style);
+  std::vector<std::string> names;
   for (const Header& header : headers) names.push_back(header.name);
   std::optional<std::size_t> column;
   std::string unit;
