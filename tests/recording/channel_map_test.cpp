@@ -55,6 +55,20 @@ TEST(ChannelMap, SwitchesBetweenChannels) {
   EXPECT_THAT(m.recording.find("speed")->value, ElementsAre(10.0, 22.0, 12.0));
 }
 
+TEST(ChannelMap, TakesOfTwoMeaningsOfAUnitThatOfTheChannel) {
+  Recording log;
+  const Unit gauss = parse_unit("G");
+  log.add(Channel{"Az", gauss.si(), "G", make_time_base({0.0, 1.0}), {gauss.to_si(1.0), gauss.to_si(2.0)}});
+  log.add(Channel{"raw", Unit{}, "1", make_time_base({0.0, 1.0}), {1.0, 2.0}});
+  const std::vector<StandardChannel> standard{{"accel_z", "m/s^2"}};
+  for (const char* map : {"accel_z = 'Az'", "accel_z = { channel = 'Az' }", "accel_z = { channel = 'raw', unit = 'G' }",
+                          "accel_z = 'raw'\nunits = ['knots', 'G']"}) {
+    const Study study = Study::parse(std::string("[data.map]\n") + map, "s.toml");
+    const MappedRecording m = with_channel_map({}, log, standard, study.root().table("data").table("map"));
+    EXPECT_NEAR(m.recording.at("accel_z").value[1], 19.6133, 1e-12) << map;
+  }
+}
+
 TEST(ChannelMap, RefusesWithTheKey) {
   const auto refusal = [](const char* map) { return why([&] { static_cast<void>(mapped_by(map)); }); };
   EXPECT_THAT(refusal("speeed = 'left'"), HasSubstr("is not a standard channel"));

@@ -56,6 +56,44 @@ TEST(ChannelRecognition, TakesAUnitThatTheNumbersProve) {
   EXPECT_EQ(unit_of(recognised(log_of({{"az", {-5, -5, -5}}})), "accel_z"), "?");
 }
 
+Channel with_unit(const std::string& name, const std::string& unit, double number) {
+  const Unit read = parse_unit(unit);
+  return {name, read.si(), unit, make_time_base({0.0, 1.0}), {read.to_si(number), read.to_si(number)}};
+}
+
+TEST(ChannelRecognition, TakesACapitalWhereTheUnitTells) {
+  Recording log;
+  log.add(with_unit("P", "deg/s", 180.0));
+  EXPECT_EQ(recognised(log).found.front().channel, "gyro_x");
+  Recording pressure;
+  pressure.add(with_unit("P", "Pa", 1e5));
+  EXPECT_TRUE(recognised(pressure).found.empty());
+  EXPECT_TRUE(recognised(log_of({{"P", {1, 2, 3}}})).found.empty());
+}
+
+TEST(ChannelRecognition, TakesOfTwoMeaningsOfAUnitTheChannels) {
+  Recording log;
+  log.add(with_unit("ax", "G", 2.0));
+  const MappedRecording mapped = with_recognised_channels({}, log, kRecognisable, kOtherNames, StudyTable("data.map"));
+  EXPECT_NEAR(mapped.recording.at("accel_x").value[0], 19.6133, 1e-12);
+  EXPECT_THAT(mapped.origins.front().note, HasSubstr("'G' by what it is the unit of"));
+}
+
+TEST(ChannelRecognition, TakesHalfTheDifferenceOfAPair) {
+  const std::array<StandardChannel, 1> surfaces{{{"aileron", "rad"}}};
+  const std::array<ChannelAlias, 1> pair{
+      {{"leftaileron", "aileron", "half of left less right", false, "rightaileron"}}};
+  Recording log;
+  log.add(with_unit("Left Aileron", "rad", 0.3));
+  EXPECT_TRUE(recognise_channels(log, {}, surfaces, pair).found.empty()) << "one alone is no aileron";
+  log.add(with_unit("Right Aileron", "rad", -0.1));
+  const MappedRecording mapped = with_recognised_channels({}, log, surfaces, pair, StudyTable("data.map"));
+  EXPECT_NEAR(mapped.recording.at("aileron").value[0], 0.2, 1e-15);
+  EXPECT_EQ(mapped.origins.front().source, "Left Aileron, Right Aileron");
+  EXPECT_THAT(map_section(log, {}, surfaces, pair),
+              HasSubstr("aileron = { channels = [\"Left Aileron\", \"Right Aileron\"], weights = [0.5, -0.5] }"));
+}
+
 TEST(ChannelRecognition, ReadsTheUnitAtTheEndOfAName) {
   const Recognition r = recognised(log_of({{"p_deg_s", {1, 2, 3}}, {"V_mps", {1, 2, 3}}, {"phi_m", {1, 2, 3}}}));
   EXPECT_EQ(unit_of(r, "gyro_x"), "deg/s");

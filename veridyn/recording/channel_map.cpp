@@ -9,6 +9,7 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/core/study_keys.hpp"
+#include "veridyn/core/unit_spellings.hpp"
 
 namespace veridyn::recording {
 namespace {
@@ -95,7 +96,9 @@ MapEntry read_entry(const StudyTable& table, const StandardChannel& target) {
   MapEntry entry = entry_keys().read(table);
   if (entry.unit.empty()) return entry;
   try {
-    static_cast<void>(parse_unit_like(entry.unit, parse_unit(target.unit)));
+    const Unit expected = parse_unit(target.unit);
+    static_cast<void>(parse_unit_like(entry.unit, expected));
+    entry.unit = unit_meant(entry.unit, expected);
   } catch (const InputError& wrong) {
     table.fail("unit", wrong.what());
   }
@@ -106,6 +109,14 @@ const Channel& source_of(const Recording& log, const StudyTable& table, std::str
                          const std::string& channel) {
   if (const Channel* found = log.find(channel)) return *found;
   table.fail(key, fmt::format("{} has no channel '{}'{}", log.source, channel, suggestion(channel, log.names())));
+}
+
+/// Where the log's unit has two meanings, the one that the channel needs; empty: as the log has it.
+std::string other_meaning(const Channel& raw, const StandardChannel& target) {
+  const Unit expected = parse_unit(target.unit);
+  if (raw.unit.same_dimension(expected)) return {};
+  const std::string meant = unit_meant(raw.recorded_unit, expected);
+  return meant == raw.recorded_unit ? std::string() : meant;
 }
 
 void check_dimension(const StudyTable& table, std::string_view key, const Channel& raw, std::string_view unit,
@@ -174,7 +185,7 @@ MappedValues map_from_study(const Recording& log, const StudyTable& map, const S
     const std::string channel = map.text(target.name);
     const Channel& raw = source_of(log, map, target.name, channel);
     const bool bare = raw.unit.same_dimension(Unit{}) && raw.recorded_unit == "1";
-    const std::string unit = bare ? declared_unit(map, target) : std::string();
+    const std::string unit = bare ? declared_unit(map, target) : other_meaning(raw, target);
     check_dimension(map, target.name, raw, unit, target);
     return {raw.time, in_si(raw, 0.0, 1.0, unit), channel};
   }
@@ -189,9 +200,10 @@ MappedValues map_from_study(const Recording& log, const StudyTable& map, const S
     if (entry.channel.empty()) table.fail("channel", "is missing: give channel, channels or switch");
     out.from = entry.channel;
     const Channel& raw = source_of(log, table, "channel", out.from);
-    check_dimension(table, "channel", raw, entry.unit, target);
+    const std::string unit = entry.unit.empty() ? other_meaning(raw, target) : entry.unit;
+    check_dimension(table, "channel", raw, unit, target);
     out.time = raw.time;
-    out.values = in_si(raw, entry.zero, entry.scale, entry.unit);
+    out.values = in_si(raw, entry.zero, entry.scale, unit);
   }
   if (entry.delay_s != 0.0) out.time = make_time_base(shifted(*out.time, entry.delay_s));
   return out;
@@ -260,6 +272,12 @@ MappedRecording with_standard_channels(MappedRecording mapped, const Recording& 
       mapped.log_kind = "standard names";
       continue;
     }
+    if (const std::string meant = other_meaning(*channel, target); !meant.empty()) {
+      mapped.recording.add(make_channel(target.name, target.unit, channel->time, in_si(*channel, 0.0, 1.0, meant)));
+      mapped.origins.push_back({target.name, target.name, channel->rate_Hz(), fmt::format("in {}", meant)});
+      mapped.log_kind = "standard names";
+      continue;
+    }
     if (!channel->unit.same_dimension(expected)) {
       throw InputError(log.source, fmt::format("channel '{}' is in [{}], expected [{}]", target.name,
                                                channel->unit.si_name(), target.unit));
@@ -276,7 +294,8 @@ std::string declared_unit(const StudyTable& map, const StandardChannel& target) 
   if (map.is_text(kUnits) && map.text(kUnits) == "SI") return target.unit;
   for (const std::string& unit : map.texts(kUnits)) {
     try {
-      if (parse_unit(unit).same_dimension(parse_unit(target.unit))) return unit;
+      const Unit expected = parse_unit(target.unit);
+      if (parse_unit(unit_meant(unit, expected)).same_dimension(expected)) return unit_meant(unit, expected);
     } catch (const InputError& wrong) {
       map.fail(kUnits, wrong.what());
     }

@@ -12,25 +12,50 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/rank.hpp"
 #include "veridyn/core/text.hpp"
+#include "veridyn/core/unit_spellings.hpp"
 #include "veridyn/recording/gravity.hpp"
 
 namespace veridyn::recording {
 namespace {
 
 /// Units that people write at the end of a name, the longest first.
-constexpr std::pair<std::string_view, std::string_view> kSuffixes[] = {{"_deg_per_s", "deg/s"}, {"_rad_per_s", "rad/s"},
-                                                                       {"_deg_s", "deg/s"},     {"_rad_s", "rad/s"},
-                                                                       {"_degps", "deg/s"},     {"_radps", "rad/s"},
-                                                                       {"_m_s2", "m/s^2"},      {"_mps2", "m/s^2"},
-                                                                       {"_m_s_2", "m/s^2"},     {"_ft_s", "ft/s"},
-                                                                       {"_dps", "deg/s"},       {"_m_s", "m/s"},
-                                                                       {"_mps", "m/s"},         {"_fps", "ft/s"},
-                                                                       {"_kmh", "km/h"},        {"_kph", "km/h"},
-                                                                       {"_kts", "kt"},          {"_deg", "deg"},
-                                                                       {"_rad", "rad"},         {"_hpa", "hPa"},
-                                                                       {"_rpm", "rpm"},         {"_kt", "kt"},
-                                                                       {"_ms2", "m/s^2"},       {"_pa", "Pa"},
-                                                                       {"_ft", "ft"},           {"_m", "m"}};
+constexpr std::pair<std::string_view, std::string_view> kSuffixes[] = {{"_deg_per_s", "deg/s"},
+                                                                       {"_rad_per_s", "rad/s"},
+                                                                       {"_deg_s", "deg/s"},
+                                                                       {"_rad_s", "rad/s"},
+                                                                       {"_degps", "deg/s"},
+                                                                       {"_radps", "rad/s"},
+                                                                       {"_m_s2", "m/s^2"},
+                                                                       {"_mps2", "m/s^2"},
+                                                                       {"_m_s_2", "m/s^2"},
+                                                                       {"_ft_s", "ft/s"},
+                                                                       {"_deg_sec", "deg/s"},
+                                                                       {"_rad_sec", "rad/s"},
+                                                                       {"_degrees", "deg"},
+                                                                       {"_radians", "rad"},
+                                                                       {"_knots", "kt"},
+                                                                       {"_feet", "ft"},
+                                                                       {"_mph", "mph"},
+                                                                       {"_psi", "psi"},
+                                                                       {"_lbf", "lbf"},
+                                                                       {"_kpa", "kPa"},
+                                                                       {"_dps", "deg/s"},
+                                                                       {"_m_s", "m/s"},
+                                                                       {"_mps", "m/s"},
+                                                                       {"_fps", "ft/s"},
+                                                                       {"_kmh", "km/h"},
+                                                                       {"_kph", "km/h"},
+                                                                       {"_kts", "kt"},
+                                                                       {"_deg", "deg"},
+                                                                       {"_rad", "rad"},
+                                                                       {"_hpa", "hPa"},
+                                                                       {"_rpm", "rpm"},
+                                                                       {"_kt", "kt"},
+                                                                       {"_ms2", "m/s^2"},
+                                                                       {"_pa", "Pa"},
+                                                                       {"_ft", "ft"},
+                                                                       {"_g", "g"},
+                                                                       {"_m", "m"}};
 
 /// A name as aliases have it, and the unit at its end.
 struct PlainName {
@@ -55,6 +80,7 @@ PlainName plain_name(std::string_view text) {
   }
   for (const char c : rest)
     if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) plain.name += c;
+  if (plain.unit.empty() && plain.name.ends_with("rpm")) plain.unit = "rpm";
   return plain;
 }
 
@@ -118,10 +144,20 @@ bool is_bare(const Channel& channel) {
 std::optional<RecognisedChannel> recognised(const Channel& channel, const StandardChannel& target,
                                             std::string_view suffix, const ChannelAlias& alias) {
   const Unit expected = parse_unit(target.unit);
-  RecognisedChannel found{target.name, channel.name, "", "", std::string(alias.note), alias.open};
+  RecognisedChannel found{.channel = target.name,
+                          .source = channel.name,
+                          .unit = {},
+                          .said = false,
+                          .why = {},
+                          .note = std::string(alias.note),
+                          .open = alias.open,
+                          .right = {}};
   if (!is_bare(channel)) {
-    if (!channel.unit.same_dimension(expected)) return std::nullopt;
-    return found;
+    if (channel.unit.same_dimension(expected)) return found;
+    found.unit = unit_meant(channel.recorded_unit, expected);
+    found.said = true;
+    found.why = fmt::format("'{}' by what it is the unit of", channel.recorded_unit);
+    return found.unit == channel.recorded_unit ? std::nullopt : std::optional(found);
   }
   if (!suffix.empty()) {
     if (!parse_unit(suffix).same_dimension(expected)) return std::nullopt;
@@ -133,6 +169,14 @@ std::optional<RecognisedChannel> recognised(const Channel& channel, const Standa
   found.unit = std::move(guess.unit);
   found.why = std::move(guess.why);
   return found;
+}
+
+/// Whether a channel bears a name.
+bool bears(const PlainName& plain, const Channel& channel, std::string_view name) {
+  if (plain.name == name || channel.name == name) return true;
+  // "P (deg/s)" is no pressure; without a unit it may be.
+  return name.size() == 1 && name.front() >= 'a' && name.front() <= 'z' && plain.name == upper(name) &&
+         !is_bare(channel);
 }
 
 /// Channels of one naming have one unit: that of the vertical acceleration is known by gravity.
@@ -189,16 +233,29 @@ Recognition recognise_channels(const Recording& log, const MappedRecording& mapp
     names.push_back({plain, target.name});
     std::copy_if(aliases.begin(), aliases.end(), std::back_inserter(names),
                  [&](const ChannelAlias& alias) { return alias.channel == target.name; });
+    const auto first_called = [&](std::string_view name, const ChannelAlias& alias) {
+      std::optional<RecognisedChannel> found;
+      for (const auto& [own, channel] : channels) {
+        if (!found && !taken.contains(channel->name) && bears(own, *channel, name))
+          found = recognised(*channel, target, own.unit, alias);
+      }
+      return found;
+    };
     std::optional<RecognisedChannel> found;
     for (const ChannelAlias& alias : names) {
-      for (const auto& [name, channel] : channels) {
-        if (found || taken.contains(channel->name) || (name.name != alias.name && channel->name != alias.name))
-          continue;
-        found = recognised(*channel, target, name.unit, alias);
+      if (found) break;
+      found = first_called(alias.name, alias);
+      if (!found || alias.right.empty()) continue;
+      const std::optional<RecognisedChannel> right = first_called(alias.right, alias);
+      if (!right || right->unit != found->unit) {
+        found.reset();
+        continue;
       }
+      found->right = right->source;
     }
     if (!found) continue;
     taken.insert(found->source);
+    if (!found->right.empty()) taken.insert(found->right);
     result.found.push_back(std::move(*found));
   }
   share_unit_of_gravity(result.found);
@@ -220,15 +277,24 @@ MappedRecording with_recognised_channels(MappedRecording mapped, const Recording
     }
     const auto target = std::ranges::find(standard, one.channel, &StandardChannel::name);
     const Channel& raw = log.at(one.source);
-    const std::string unit = one.unit.empty() ? std::string() : declared_unit(map, *target);
+    const std::string unit = one.unit.empty() || one.said ? one.unit : declared_unit(map, *target);
     if (!one.unit.empty() && unit.empty()) {
       if (one.source != one.channel) without_unit.push_back(fmt::format("{} ({})", one.source, one.channel));
       continue;
     }
-    std::string note = unit.empty() ? "by its name" : fmt::format("by its name, in {}, as the study declares", unit);
+    std::string note = "by its name";
+    if (!unit.empty()) note += one.said ? ", " + one.why : fmt::format(", in {}, as the study declares", unit);
     if (!one.note.empty()) note += ", " + one.note;
-    mapped.recording.add(make_channel(one.channel, target->unit, raw.time, in_si(raw, 0.0, 1.0, unit)));
-    mapped.origins.push_back({one.channel, one.source, raw.rate_Hz(), std::move(note)});
+    std::vector<double> values = in_si(raw, 0.0, 1.0, unit);
+    if (!one.right.empty()) {
+      const Channel& right = log.at(one.right);
+      const std::vector<double> other =
+          interpolated({one.right, {}, "", right.time, in_si(right, 0.0, 1.0, unit)}, *raw.time);
+      for (std::size_t i = 0; i < values.size(); ++i) values[i] = 0.5 * (values[i] - other[i]);
+    }
+    mapped.recording.add(make_channel(one.channel, target->unit, raw.time, std::move(values)));
+    const std::string from = one.right.empty() ? one.source : fmt::format("{}, {}", one.source, one.right);
+    mapped.origins.push_back({one.channel, from, raw.rate_Hz(), std::move(note)});
   }
   if (!without_unit.empty()) {
     mapped.notes.push_back(
@@ -248,12 +314,20 @@ std::string map_section(const Recording& log, const MappedRecording& mapped, std
     text += fmt::format("#   {} <- {} ({:.3g} Hz){}\n", origin.channel, on_one_line(origin.source), origin.rate_Hz,
                         origin.note.empty() ? "" : ", " + origin.note);
   }
+  std::vector<std::string> left;
+  for (const ChannelOrigin& other : mapped.left)
+    left.push_back(fmt::format("{} ({:.3g} Hz, {} too)", other.source, other.rate_Hz, other.channel));
+  text += listed("left", left);
   if (!recognition.found.empty())
     text += "# Recognised by their names; confirm each, and the unit that the log does not say:\n";
   for (const RecognisedChannel& one : recognition.found) {
-    std::string line = one.unit.empty() ? fmt::format("{} = {}", one.channel, toml_text(one.source))
-                                        : fmt::format("{} = {{ channel = {}, unit = {} }}", one.channel,
-                                                      toml_text(one.source), toml_text(one.unit));
+    const std::string unit = one.unit.empty() ? std::string() : fmt::format(", unit = {}", toml_text(one.unit));
+    std::string line = fmt::format("{} = {{ channel = {}{} }}", one.channel, toml_text(one.source), unit);
+    if (unit.empty()) line = fmt::format("{} = {}", one.channel, toml_text(one.source));
+    if (!one.right.empty()) {
+      line = fmt::format("{} = {{ channels = [{}, {}], weights = [0.5, -0.5]{} }}", one.channel, toml_text(one.source),
+                         toml_text(one.right), unit);
+    }
     if (one.open) line.insert(0, "# ");  // to be decided by its user
     std::string comment = one.why;
     if (one.unit.empty()) comment = fmt::format("in {}", log.at(one.source).recorded_unit);

@@ -11,10 +11,13 @@ namespace veridyn::recording {
 
 /// Another name under which people record a standard channel: "p" for gyro_x.
 struct ChannelAlias {
-  std::string_view name;     ///< small letters and digits only: "Yaw Rate" is "yawrate"; one letter: as it is
+  /// Small letters and digits only: "Yaw Rate" is "yawrate"; one letter as it is, a small one also for the capital of
+  /// a channel that has a unit.
+  std::string_view name;
   std::string_view channel;  ///< standard name
   std::string_view note{};   ///< what the name says besides: "true airspeed"
   bool open = false;         ///< it may be something else, as the note asks: not taken but by the study
+  std::string_view right{};  ///< `name` is the left one of a pair, this the right: half their difference is the channel
 };
 
 /// A channel of a log that is a standard channel by its name.
@@ -22,9 +25,11 @@ struct RecognisedChannel {
   std::string channel;  ///< standard name
   std::string source;   ///< name in the log
   std::string unit;     ///< of the numbers, where the log does not say it; "?" where nothing tells
+  bool said = false;    ///< the log says the unit, by a word with two meanings
   std::string why;      ///< how the unit is known, or what it may be; empty where the log says it
   std::string note;     ///< of the name
   bool open = false;    ///< the name alone does not decide
+  std::string right;    ///< of a pair: the channel is half of source less this
 };
 
 /// What a log holds, by names.
