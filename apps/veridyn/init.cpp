@@ -61,7 +61,8 @@ Cn = ["1", "beta", "p_n", "r_n", "da", "dr"]
 [subject.propulsion]
 kind = "none"
 
-# Full throws, to turn servo positions into deflections.
+# Full throws, to turn servo positions into deflections. Take away the table of a rudder or aileron that the aircraft
+# does not have.
 [subject.actuators.elevator]
 upper = "? deg"                  # symmetric unless `lower` says otherwise
 [subject.actuators.aileron]
@@ -105,6 +106,9 @@ file = @LOG@
 
 [validate]
 @keys validate period open_loop
+
+[flying_qualities]
+@keys flying_qualities class category airspeed
 
 # `veridyn track study.toml` follows the parameters on line, replayed or live (docs/tracking.md).
 [track]

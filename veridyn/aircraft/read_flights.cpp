@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/aircraft/absent_surfaces.hpp"
 #include "veridyn/aircraft/aircraft_study.hpp"
 #include "veridyn/aircraft/model/atmosphere.hpp"
 #include "veridyn/aircraft/model/estimated_subject.hpp"
@@ -113,6 +114,17 @@ FlightStudy recorded(const recording::StudyRecording& run, const StudyTable& dat
 }
 
 /// What several flights have to have in common.
+/// Surfaces that the aircraft does not have are no terms of its model.
+void leave_out_absent_surfaces(std::vector<FlightStudy>& flights, const StudyTable& subject) {
+  const auto recorded = [&](std::string_view name) {
+    return std::ranges::any_of(flights, [&](const FlightStudy& f) { return f.mapped.recording.has(name); });
+  };
+  for (FlightStudy& flight : flights) {
+    for (std::string& note : without_absent_surfaces(flight.subject.model, subject, recorded))
+      flight.mapped.notes.push_back(std::move(note));
+  }
+}
+
 std::vector<FlightStudy> alike(std::vector<FlightStudy> flights) {
   const bool whole_flights = std::ranges::any_of(flights, &FlightStudy::held_out);
   double slowest = recording::kHighestGridRate_Hz, fastest = 0.0;
@@ -161,6 +173,7 @@ std::vector<FlightStudy> read_flights(const Study& study, Progress& progress) {
   const SurfaceThrows throws = throws_of(options.subject, root.table("subject"));
   for (const recording::StudyRecording& run : runs) flights.push_back(recorded(run, data, options, throws));
   root.finish();
+  leave_out_absent_surfaces(flights, root.table("subject"));
   if (flights.size() > 1) return alike(std::move(flights));
   return flights;
 }
