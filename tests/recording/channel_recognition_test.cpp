@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <numbers>
 
 namespace veridyn::recording {
 namespace {
@@ -76,22 +77,22 @@ TEST(ChannelRecognition, TakesOfTwoMeaningsOfAUnitTheChannels) {
   log.add(with_unit("ax", "G", 2.0));
   const MappedRecording mapped = with_recognised_channels({}, log, kRecognisable, kOtherNames, StudyTable("data.map"));
   EXPECT_NEAR(mapped.recording.at("accel_x").value[0], 19.6133, 1e-12);
-  EXPECT_THAT(mapped.origins.front().note, HasSubstr("'G' by what it is the unit of"));
+  EXPECT_THAT(mapped.origins.front().note, HasSubstr("in g: the meaning of 'G' here"));
 }
 
 TEST(ChannelRecognition, TakesHalfTheDifferenceOfAPair) {
   const std::array<StandardChannel, 1> surfaces{{{"aileron", "rad"}}};
   const std::array<ChannelAlias, 1> pair{
-      {{"leftaileron", "aileron", "half of left less right", false, "rightaileron"}}};
+      {{"rightaileron", "aileron", "half of right less left", false, "leftaileron"}}};
   Recording log;
   log.add(with_unit("Left Aileron", "rad", 0.3));
   EXPECT_TRUE(recognise_channels(log, {}, surfaces, pair).found.empty()) << "one alone is no aileron";
   log.add(with_unit("Right Aileron", "rad", -0.1));
   const MappedRecording mapped = with_recognised_channels({}, log, surfaces, pair, StudyTable("data.map"));
-  EXPECT_NEAR(mapped.recording.at("aileron").value[0], 0.2, 1e-15);
-  EXPECT_EQ(mapped.origins.front().source, "Left Aileron, Right Aileron");
+  EXPECT_NEAR(mapped.recording.at("aileron").value[0], -0.2, 1e-15);
+  EXPECT_EQ(mapped.origins.front().source, "Right Aileron, Left Aileron");
   EXPECT_THAT(map_section(log, {}, surfaces, pair),
-              HasSubstr("aileron = { channels = [\"Left Aileron\", \"Right Aileron\"], weights = [0.5, -0.5] }"));
+              HasSubstr("aileron = { channels = [\"Right Aileron\", \"Left Aileron\"], weights = [0.5, -0.5] }"));
 }
 
 TEST(ChannelRecognition, ReadsTheUnitAtTheEndOfAName) {
@@ -101,6 +102,11 @@ TEST(ChannelRecognition, ReadsTheUnitAtTheEndOfAName) {
   // Metres are no angle.
   EXPECT_EQ(unit_of(r, "roll"), "not found");
   EXPECT_THAT(r.others, ElementsAre("phi_m"));
+  const MappedRecording taken = with_recognised_channels({}, log_of({{"p_dps", {180, 0, 0}}, {"ax_g", {1, 1, 1}}}),
+                                                         kRecognisable, kOtherNames, StudyTable("data.map"));
+  EXPECT_NEAR(taken.recording.at("gyro_x").value[0], std::numbers::pi, 1e-15);
+  EXPECT_EQ(taken.origins.front().note, "by its name, in deg/s: by the end of its name");
+  EXPECT_THAT(taken.notes, ElementsAre(HasSubstr("without a unit and so not taken: ax_g (accel_x)")));
 }
 
 TEST(ChannelRecognition, TellsOneLetterFromItsCapital) {

@@ -151,17 +151,18 @@ std::optional<RecognisedChannel> recognised(const Channel& channel, const Standa
                           .why = {},
                           .note = std::string(alias.note),
                           .open = alias.open,
-                          .right = {}};
+                          .less = {}};
   if (!is_bare(channel)) {
     if (channel.unit.same_dimension(expected)) return found;
     found.unit = unit_meant(channel.recorded_unit, expected);
     found.said = true;
-    found.why = fmt::format("'{}' by what it is the unit of", channel.recorded_unit);
+    found.why = fmt::format("the meaning of '{}' here", channel.recorded_unit);
     return found.unit == channel.recorded_unit ? std::nullopt : std::optional(found);
   }
   if (!suffix.empty()) {
     if (!parse_unit(suffix).same_dimension(expected)) return std::nullopt;
     found.unit = suffix;
+    found.said = suffix.size() > 1;  // "_m" and "_g" may be other words' beginnings
     found.why = "by the end of its name";
     return found;
   }
@@ -245,17 +246,17 @@ Recognition recognise_channels(const Recording& log, const MappedRecording& mapp
     for (const ChannelAlias& alias : names) {
       if (found) break;
       found = first_called(alias.name, alias);
-      if (!found || alias.right.empty()) continue;
-      const std::optional<RecognisedChannel> right = first_called(alias.right, alias);
-      if (!right || right->unit != found->unit) {
+      if (!found || alias.less.empty()) continue;
+      const std::optional<RecognisedChannel> other = first_called(alias.less, alias);
+      if (!other || other->unit != found->unit) {
         found.reset();
         continue;
       }
-      found->right = right->source;
+      found->less = other->source;
     }
     if (!found) continue;
     taken.insert(found->source);
-    if (!found->right.empty()) taken.insert(found->right);
+    if (!found->less.empty()) taken.insert(found->less);
     result.found.push_back(std::move(*found));
   }
   share_unit_of_gravity(result.found);
@@ -283,17 +284,19 @@ MappedRecording with_recognised_channels(MappedRecording mapped, const Recording
       continue;
     }
     std::string note = "by its name";
-    if (!unit.empty()) note += one.said ? ", " + one.why : fmt::format(", in {}, as the study declares", unit);
+    if (!unit.empty())
+      note +=
+          one.said ? fmt::format(", in {}: {}", unit, one.why) : fmt::format(", in {}, as the study declares", unit);
     if (!one.note.empty()) note += ", " + one.note;
     std::vector<double> values = in_si(raw, 0.0, 1.0, unit);
-    if (!one.right.empty()) {
-      const Channel& right = log.at(one.right);
+    if (!one.less.empty()) {
+      const Channel& less = log.at(one.less);
       const std::vector<double> other =
-          interpolated({one.right, {}, "", right.time, in_si(right, 0.0, 1.0, unit)}, *raw.time);
+          interpolated({one.less, {}, "", less.time, in_si(less, 0.0, 1.0, unit)}, *raw.time);
       for (std::size_t i = 0; i < values.size(); ++i) values[i] = 0.5 * (values[i] - other[i]);
     }
     mapped.recording.add(make_channel(one.channel, target->unit, raw.time, std::move(values)));
-    const std::string from = one.right.empty() ? one.source : fmt::format("{}, {}", one.source, one.right);
+    const std::string from = one.less.empty() ? one.source : fmt::format("{}, {}", one.source, one.less);
     mapped.origins.push_back({one.channel, from, raw.rate_Hz(), std::move(note)});
   }
   if (!without_unit.empty()) {
@@ -324,9 +327,9 @@ std::string map_section(const Recording& log, const MappedRecording& mapped, std
     const std::string unit = one.unit.empty() ? std::string() : fmt::format(", unit = {}", toml_text(one.unit));
     std::string line = fmt::format("{} = {{ channel = {}{} }}", one.channel, toml_text(one.source), unit);
     if (unit.empty()) line = fmt::format("{} = {}", one.channel, toml_text(one.source));
-    if (!one.right.empty()) {
+    if (!one.less.empty()) {
       line = fmt::format("{} = {{ channels = [{}, {}], weights = [0.5, -0.5]{} }}", one.channel, toml_text(one.source),
-                         toml_text(one.right), unit);
+                         toml_text(one.less), unit);
     }
     if (one.open) line.insert(0, "# ");  // to be decided by its user
     std::string comment = one.why;

@@ -17,7 +17,7 @@ struct ChannelAlias {
   std::string_view channel;  ///< standard name
   std::string_view note{};   ///< what the name says besides: "true airspeed"
   bool open = false;         ///< it may be something else, as the note asks: not taken but by the study
-  std::string_view right{};  ///< `name` is the left one of a pair, this the right: half their difference is the channel
+  std::string_view less{};   ///< of a pair: the channel is half of `name` less this one
 };
 
 /// A channel of a log that is a standard channel by its name.
@@ -25,11 +25,11 @@ struct RecognisedChannel {
   std::string channel;  ///< standard name
   std::string source;   ///< name in the log
   std::string unit;     ///< of the numbers, where the log does not say it; "?" where nothing tells
-  bool said = false;    ///< the log says the unit, by a word with two meanings
+  bool said = false;    ///< the log says the unit: by the end of the name, or a word with two meanings
   std::string why;      ///< how the unit is known, or what it may be; empty where the log says it
   std::string note;     ///< of the name
   bool open = false;    ///< the name alone does not decide
-  std::string right;    ///< of a pair: the channel is half of source less this
+  std::string less;     ///< of a pair: the channel is half of source less this
 };
 
 /// What a log holds, by names.
@@ -41,7 +41,7 @@ struct Recognition {
 /// Finds the standard channels that `mapped` lacks among the channels of the log, by standard names without their unit
 /// and by `aliases`, the first that fits. A channel whose unit is of another kind is passed over.
 ///
-/// Where the log gives no unit, one at the end of the name ("V_mps") or the numbers may say it: angles beyond a turn
+/// Where the log gives no unit, one at the end of the name ("V_mps") says it, or the numbers may: angles beyond a turn
 /// are no radians, the median of a vertical acceleration is gravity. Else it is "?": nothing is guessed.
 [[nodiscard]] Recognition recognise_channels(const Recording& log, const MappedRecording& mapped,
                                              std::span<const StandardChannel> standard,

@@ -78,6 +78,26 @@ TEST(ChannelMap, KnowsTheNamesOfTheLiteratureWhereTheUnitIsKnown) {
   EXPECT_THAT(mapped.notes, ::testing::Contains(HasSubstr("without a unit and so not taken: q (gyro_y)")));
 }
 
+// Names as JSBSim 1.3.3 and X-Plane 11 write them.
+TEST(ChannelMap, KnowsTheNamesOfSimulatorsByTheirUnits) {
+  const MappedRecording jsbsim = map(log_with(
+      {channel("P", "rad/s", {0.5, 0.5}), channel("V_{Total}", "m/s", {30, 30}),
+       channel("V_{Inertial}", "m/s", {400, 400}), channel("BodyAccel_Z", "m/s^2", {-9.8, -9.8}),
+       channel("Altitude ASL", "m", {1000, 1000}), channel("P_{Ambient}", "Pa", {90000, 90000}),
+       channel("Left Aileron Position", "rad", {0.1, 0.1}), channel("Right Aileron Position", "rad", {-0.1, -0.1}),
+       channel("Elevator Position", "rad", {0.2, 0.2}), channel("Rudder Position", "rad", {0.3, 0.3})}));
+  const std::pair<const char*, double> expected[] = {
+      {"gyro_x", 0.5},   {"airspeed", 30.0}, {"accel_z", -9.8}, {"alt", 1000.0}, {"static_pressure", 90000.0},
+      {"aileron", -0.1}, {"elevator", 0.2},  {"rudder", 0.3}};
+  for (const auto& [name, value] : expected) EXPECT_EQ(jsbsim.recording.at(name).value[0], value) << name;
+  const MappedRecording xplane =
+      map(log_with({channel("__P,rad/s", "rad/s", {0.5, 0.5}), channel("_Vind,_kias", "m/s", {40, 40}),
+                    channel("Vtrue,_ktas", "m/s", {50, 50}), channel("alpha,__deg", "rad", {0.1, 0.1})}));
+  EXPECT_EQ(xplane.recording.at("gyro_x").value[0], 0.5);
+  EXPECT_EQ(xplane.recording.at("airspeed").value[0], 50.0);
+  EXPECT_EQ(xplane.recording.at("alpha").value[0], 0.1);
+}
+
 TEST(ChannelMap, TakesUnitsThatTheStudyDeclares) {
   const Recording log =
       log_with({channel("p", "1", {90, 180}), channel("alpha", "1", {9, 18}), channel("az", "1", {-1, -2})});

@@ -5,7 +5,8 @@ namespace veridyn::aircraft {
 std::span<const recording::ChannelAlias> channel_aliases() {
   // Body rates, Euler angles and surfaces as in Klein and Morelli, "Aircraft System Identification" (AIAA 2006), and in
   // SIDPAC; V is the true airspeed there. Others are of JSBSim's own output ("V_{Total}", "Elevator Position"), X-Plane
-  // ("Vtrue,_ktas", "__P,rad/s") and instruments (Garmin, Dynon: "GPS Velocity N", "OAT").
+  // ("Vtrue,_ktas", "__P,rad/s") and instruments (Garmin, Dynon: "GPS Velocity N", "OAT"). Half of the right aileron
+  // less the left one is theirs too: a positive deflection gives a negative moment.
   static constexpr recording::ChannelAlias kAliases[] = {
       {"ax", "accel_x"},
       {"accx", "accel_x"},
@@ -94,9 +95,9 @@ std::span<const recording::ChannelAlias> channel_aliases() {
       {"da", "aileron"},
       {"deltaa", "aileron"},
       {"ail", "aileron"},
-      {"leftaileronposition", "aileron", "half of left less right", false, "rightaileronposition"},
-      {"leftaileron", "aileron", "half of left less right", false, "rightaileron"},
-      {"aileronleft", "aileron", "half of left less right", false, "aileronright"},
+      {"rightaileronposition", "aileron", "half of right less left", false, "leftaileronposition"},
+      {"rightaileron", "aileron", "half of right less left", false, "leftaileron"},
+      {"aileronright", "aileron", "half of right less left", false, "aileronleft"},
       {"dr", "rudder"},
       {"deltar", "rudder"},
       {"rud", "rudder"},
