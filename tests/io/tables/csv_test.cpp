@@ -165,6 +165,8 @@ TEST(Csv, FindsAHeaderBelowLinesOfAnyForm) {
   EXPECT_THAT(same.at("TAS").value, ::testing::ElementsAreArray(log.at("TAS").value));
   EXPECT_EQ(refusal("a,b\n0,1\n", {.skip_lines = 3}), "a.csv: has only 2 lines, skip_lines leaves nothing of it");
   EXPECT_EQ(refusal("time,a\n0,1\n1,hello\n", {.skip_lines = 1}).substr(0, 29), "a.csv:2: no time column found");
+  // A row that is wrong makes no table between blanks of one between commas.
+  EXPECT_EQ(refusal("time, a, b\n0, 1, 2\n1, 2, 3\n2, 3\n3, 4, 5\n4, 5, 6\n"), "a.csv:4: 2 cells, the header has 3");
   // No header is made of rows that are longer than the first.
   EXPECT_EQ(refusal("time,a\n0,1,2\n1,2,3\n2,3,4\n3,4,5\n"), "a.csv:2: more cells than the 2 of the header");
 }

@@ -39,6 +39,11 @@ TEST(TableLayout, HasNoNamesWhereThereIsNoHeader) {
   EXPECT_EQ(layout.header_line, 2U);
 }
 
+TEST(TableLayout, TakesTypesForNamesWhereNothingElseIs) {
+  EXPECT_THAT(find_layout("title\nfloat,double\n0,1\n1,2\n2,3\n", {}, "a.csv").names, ElementsAre("float", "double"));
+  EXPECT_THAT(find_layout("# float double\n0 1\n1 2\n", {}, "a.csv").names, IsEmpty());
+}
+
 TEST(TableLayout, KeepsTheLinesAboveTheHeader) {
   const TableLayout layout = find_layout("title\nkey,value\n# remark\ntime,a,b\n0,1,2\n1,2,3\n2,3,4\n", {}, "a.csv");
   EXPECT_THAT(layout.names, ElementsAre("time", "a", "b"));

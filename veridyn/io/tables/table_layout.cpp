@@ -258,7 +258,9 @@ class LayoutFinder {
       const bool comma = options_.decimal == ',' || (options_.decimal == '\0' && delimiter != ',');
       HeaderBlock block{words_ahead_of_data(rows_alike(lines, delimiter, comma)), delimiter};
       if (block.rows.empty()) continue;
-      if (block.rows.size() == 1 && block.rows.front().line.number == first.number) return std::nullopt;
+      const bool at_top = block.rows.front().line.number == first.number;
+      if (at_top && block.rows.size() == 1 && delimiter == layout_.style.delimiter) return std::nullopt;
+      if (at_top && delimiter != layout_.style.delimiter) continue;  // a row that is wrong is to be named as such
       return block;
     }
     return std::nullopt;
@@ -273,7 +275,13 @@ class LayoutFinder {
     std::vector<Row> rows = block.rows;
     for (Row& row : rows)
       if (row.cells.back().empty()) row.cells.pop_back();  // a delimiter at the end
+    const Row first_row = rows.front();
     choose_names_and_units(rows);
+    if (layout_.names.empty()) {  // only words that name types elsewhere
+      layout_.names = first_row.cells;
+      layout_.columns = first_row.cells.size();
+      layout_.header_line = first_row.line.number;
+    }
     layout_.rows = from(bottom);
     layout_.rows.remove_prefix(bottom.text.size());
     layout_.lines = bottom.number;
