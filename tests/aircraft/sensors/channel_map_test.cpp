@@ -107,7 +107,7 @@ TEST(ChannelMap, TakesUnitsThatTheStudyDeclares) {
   EXPECT_FALSE(mapped.recording.has("accel_z"));
   EXPECT_EQ(map(log, "units = \"SI\"\n").recording.at("accel_z").value[1], -2.0);
   EXPECT_NEAR(map(log, "units = \"deg/s\"\ngyro_z = \"p\"\n").recording.at("gyro_z").value[0], 0.5 * kPi, 1e-12);
-  EXPECT_THAT(why([&] { static_cast<void>(map(log, "units = [\"degs\"]\n")); }), HasSubstr("map.units"));
+  EXPECT_THAT(why([&] { static_cast<void>(map(log, "units = [\"dgs\"]\n")); }), HasSubstr("map.units"));
 }
 
 TEST(ChannelMap, RefusesAFrameWithZUp) {
