@@ -8,12 +8,14 @@
 ///     aircraft::validate(other, estimate, ...)    // does the estimate predict another flight?
 ///     aircraft::track_flight(flight, progress)    // on line, with an alarm at changes; TrackedFlight as it grows
 ///     aircraft::write_jsbsim(analysis.identified) // export; to_json(subject), io::to_json(estimate)
+///     aircraft::complete_subject(...)             // what is not known: study, estimates, zero; fly_trial, jsbsim_file
 ///
 /// Without a study: `builtin_subject` is an aircraft, `simulate_study` a flight of one, `identify_coefficients` and
 /// `reconstruct(recording, ...)` the stages by themselves; `analyse_swing_test` (inertia) and `calibrate` (air
 /// data) are for the ground. Component `aircraft`.
 
 #include "veridyn/aircraft/aircraft_study.hpp"
+#include "veridyn/aircraft/export/jsbsim_export.hpp"
 #include "veridyn/aircraft/flight_sensitivity.hpp"
 #include "veridyn/aircraft/identification/identified_estimate.hpp"
 #include "veridyn/aircraft/model/builtin_subjects.hpp"

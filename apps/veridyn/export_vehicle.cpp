@@ -95,8 +95,9 @@ int export_vehicle(const StudyRun& run) {
                                                            .vertical_stiffness = vehicle.parameters.K_tr}));
   }
   const bool lacks_tyres = format == "all" && curved == nullptr;
-  publish_export(run, folder, vehicle.inputs, estimate,
-                 lacks_tyres ? fmt::format("no .tir: the tyres are {}", vehicle.tyre_text) : std::string());
+  MoreResults more;
+  if (lacks_tyres) more.lines.push_back(fmt::format("no .tir: the tyres are {}", vehicle.tyre_text));
+  publish_export(run, folder, vehicle.inputs, estimate, more);
   return kDone;
 }
 

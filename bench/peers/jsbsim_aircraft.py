@@ -79,7 +79,7 @@ class JsbsimAircraft:
         for surface in SURFACES:
             low, high = self.stops[surface]
             self.fdm[f"fcs/{surface}-cmd-norm"] = row[surface] / (high if row[surface] > 0.0 else -low)
-        self.fdm["fcs/engine-throttle-norm"] = row["throttle"]
+        self.fdm["fcs/throttle-cmd-norm"] = row["throttle"]
 
     def start(self, row):
         """Pose, velocity and rates of a row, its deflections and throttle commanded."""

@@ -5,10 +5,14 @@ and loads of every step) and exports it (`export --format jsbsim`). JSBSim loads
 throttle of every step. Servos are without lag, so that a commanded deflection is a deflection: truth.csv has no
 commands, and so the file's servos are not compared; the rotor's lag is."""
 
+import json
+import subprocess
+import sys
+
 import numpy
 import pytest
 
-from jsbsim_aircraft import LOADS, JsbsimAircraft
+from jsbsim_aircraft import FOOT, LOADS, JsbsimAircraft
 from program import read_csv, run_study, veridyn
 
 pytestmark = pytest.mark.peer("jsbsim")
@@ -134,3 +138,104 @@ def test_jsbsim_reads_the_file_without_a_word(flight, tmp_path, capfd):
     JsbsimAircraft(exported, tmp_path, STEP)
     captured = capfd.readouterr()
     assert "peer.xml" not in captured.out + captured.err
+
+
+# What JSBSim says of a file that it does not like; it says so on a level of messages that it prints by default.
+COMPLAINTS = ("warning", "in file", "ignored", "should have", "no thruster", "error", "deprecated", "not found")
+LOAD = """
+import jsbsim, sys
+fdm = jsbsim.FGFDMExec(None)
+fdm.set_aircraft_path(sys.argv[1])
+sys.exit(0 if fdm.load_model("peer") else 1)
+"""
+
+
+def complaints(exported, folder):
+    """Lines of both streams of a process that loads a file with JSBSim's own messages switched on."""
+    home = folder / "loud" / "peer"
+    home.mkdir(parents=True)
+    (home / "peer.xml").write_bytes(exported.read_bytes())
+    done = subprocess.run([sys.executable, "-c", LOAD, home.parent], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    lines = (done.stdout + done.stderr).splitlines()
+    return [line for line in lines if any(word in line.lower() for word in COMPLAINTS)]
+
+
+def test_jsbsim_complains_of_nothing_while_it_loads(flight, tmp_path):
+    _, exported, _ = flight
+    assert complaints(exported, tmp_path) == []
+
+
+def trimmed(air, flown, mode):
+    """The aircraft after `do_simple_trim` at the condition that the program has flown it in; raises where it fails."""
+    air.fdm["ic/h-sl-ft"] = flown["altitude"] / FOOT
+    air.fdm["ic/vt-fps"] = flown["airspeed"] / FOOT
+    air.fdm["ic/gamma-deg"] = 0.0
+    assert air.fdm.run_ic()
+    air.fdm["simulation/do_simple_trim"] = mode
+    return air.fdm
+
+
+LONGITUDINAL, FULL = 0, 1
+
+
+def check_trim(exported, summary, folder, comparison, name):
+    """JSBSim's trims against the program's: its tolerances are 1e-3 ft/s^2 and 1e-4 rad/s^2."""
+    flown = summary["jsbsim"]
+    assert flown["trimmed"]
+    fdm = trimmed(JsbsimAircraft(exported, folder / "longitudinal", STEP), flown, LONGITUDINAL)
+    comparison.within(f"{name}: alpha of the trim [rad]", abs(fdm["aero/alpha-rad"] - flown["alpha"]), 1e-4)
+    comparison.within(f"{name}: throttle of the trim", abs(fdm["fcs/throttle-pos-norm"] - flown["throttle"]), 1e-3)
+    fdm = trimmed(JsbsimAircraft(exported, folder / "full", STEP), flown, FULL)
+    speed = fdm["velocities/vt-fps"]
+    for _ in range(int(5.0 / STEP)):
+        assert fdm.run()
+    comparison.within(f"{name}: airspeed lost in 5 s, relative", abs(fdm["velocities/vt-fps"] / speed - 1.0), 1e-3)
+
+
+def test_jsbsim_trims_the_file_as_the_program_does(flight, tmp_path, comparison):
+    name, _, _ = flight
+    (tmp_path / "study.toml").write_text(STUDY.format(aircraft=name))
+    summary = json.loads(
+        veridyn("export", tmp_path / "study.toml", "--format", "jsbsim", "--out", tmp_path / "out", "--json", "--quiet")
+    )
+    if not summary["jsbsim"]["trimmed"]:
+        pytest.skip(f"{name} does not fly level at {summary['jsbsim']['airspeed']} m/s, as the program says")
+    check_trim(tmp_path / "out" / "jsbsim.xml", summary, tmp_path, comparison, name)
+
+
+# An own aircraft without an engine, flown by the built-in one.
+WITHOUT_THRUST = """
+[subject]
+name = "mine"
+mass = 12.6
+wing_area = 0.92
+span = 2.72
+chord = 0.34
+inertia = { Jx = 0.8244, Jy = 1.135, Jz = 1.759, Jxz = 0.1204 }
+[subject.model]
+CL = ["1", "alpha", "q_n", "de"]
+CD = ["1", "alpha", "alpha^2"]
+CY = ["1", "beta", "p_n", "r_n", "da", "dr"]
+Cl = ["1", "beta", "p_n", "r_n", "da", "dr"]
+Cm = ["1", "alpha", "q_n", "de"]
+Cn = ["1", "beta", "p_n", "r_n", "da", "dr"]
+[data]
+file = "out/recording.csv"
+"""
+
+
+def test_a_log_without_thrust_becomes_a_file_that_jsbsim_trims(tmp_path, comparison):
+    run_study('seed = 1\n[subject]\nbuiltin = "unatrap"\n[flight]\nduration = 200\nairspeed = 20\n', tmp_path)
+    (tmp_path / "own.toml").write_text(WITHOUT_THRUST)
+    identified = tmp_path / "identified"
+    veridyn("identify", tmp_path / "own.toml", "--out", identified, "--quiet")
+    exported = tmp_path / "export"
+    summary = json.loads(
+        veridyn("export", identified / "subject.toml", "--format", "jsbsim", "--out", exported, "--json", "--quiet")
+    )
+    sources = summary["jsbsim"]["sources"]
+    assert sources["CL_alpha"]["from"] == "the flight"
+    assert sources["CD_alpha2"]["from"] == "an estimate"
+    assert complaints(exported / "jsbsim.xml", tmp_path) == []
+    check_trim(exported / "jsbsim.xml", summary, tmp_path, comparison, "log without thrust")

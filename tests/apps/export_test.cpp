@@ -92,20 +92,93 @@ TEST_F(Export, MakesUnknownWhatWasNotIdentified) {
   }
 }
 
-// What JSBSim cannot fly is written as far as it is known by the formats that can say "unknown".
-TEST_F(Export, OfAnAircraftThatIsPartlyIdentifiedWritesAllButJsbsim) {
+// Export goes as far as it can: what was not identified is the study's, and the file and the console say so.
+TEST_F(Export, OfAnAircraftThatIsPartlyIdentifiedTakesTheRestFromTheStudy) {
   const nlohmann::json lift =
       nlohmann::json::array({parameter("CL_alpha", 4.5), parameter("Cm_alpha", nullptr, "rejected")});
   std::string spoken = with(lift, "all");
   spoken.erase(spoken.find(" --quiet"), std::string(" --quiet").size());
   const Outcome all = run(spoken);
   EXPECT_EQ(all.exit_code, 0) << all.text;
-  EXPECT_THAT(all.text, HasSubstr("JSBSim needs every parameter, these have no value: CD_0"));
+  EXPECT_THAT(all.text, HasSubstr("the flight    1: CL\n"));
+  EXPECT_THAT(all.text, HasSubstr(": CD, CY, Cl, Cm, Cn, inertia"));
   for (const char* name : {"model.json", "subject.toml", "model.csv"})
     EXPECT_THAT(read_file(in_out(name)), HasSubstr("4.5")) << name;
   EXPECT_THAT(read_file(in_out("subject.toml")), HasSubstr("unknown"));
-  EXPECT_FALSE(std::filesystem::exists(in_out("jsbsim.xml")));
-  expect_refusal(with(lift, "jsbsim"), "JSBSim needs every parameter");
+  const std::string xml = read_file(in_out("jsbsim.xml"));
+  EXPECT_THAT(xml, HasSubstr("<description>identified, 95 %: 1 to 9</description>"));
+  EXPECT_THAT(xml, HasSubstr("<description>the study's, not identified</description>"));
+}
+
+/// A study of an aircraft of which only the structure is known.
+constexpr const char* kOwnAircraft =
+    "[subject]\nname = \"mine\"\nmass = 1.9\nwing_area = 0.31\nspan = 1.27\nchord = 0.25\n"
+    "inertia = { Jx = 0.07, Jy = 0.086, Jz = 0.15, Jxz = 0.01 }\n"
+    "[subject.model]\nCL = [\"1\", \"alpha\", \"q_n\", \"de\"]\nCD = [\"1\", \"alpha\", \"alpha^2\"]\n"
+    "Cm = [\"1\", \"alpha\", \"q_n\", \"de\"]\n";
+
+// README's last command on a log without thrust: drag, the lateral motion and the engine are estimates.
+TEST_F(Export, OfALogWithoutThrustEstimatesDragEngineAndWhatWasNotExcited) {
+  nlohmann::json parameters = nlohmann::json::array();
+  for (const auto& [name, value] :
+       {std::pair{"CL_0", 0.1}, std::pair{"CL_alpha", 4.6}, std::pair{"CL_q", 6.2}, std::pair{"CL_de", 0.1},
+        std::pair{"Cm_0", -0.02}, std::pair{"Cm_alpha", -0.7}, std::pair{"Cm_q", -13.0}, std::pair{"Cm_de", -0.8}}) {
+    parameters.push_back(parameter(name, value));
+    parameters.back()["low95"] = value - 0.2;
+    parameters.back()["high95"] = value + 0.2;
+  }
+  const nlohmann::json estimate = {{"subject", "mine"},
+                                   {"method", "GTLS"},
+                                   {"parameters", parameters},
+                                   {"covariance", std::vector(8, std::vector(8, 0.0))},
+                                   {"fit", {{"flight.airspeed", 16.0}, {"flight.air_density", 1.2}}},
+                                   {"verdict", ""},
+                                   {"warnings", nlohmann::json::array()}};
+  const std::string command = "export " + file("s.toml", kOwnAircraft) + " --format jsbsim --estimate-file " +
+                              file("e.json", estimate.dump()) + " --out " + (folder_ / "out").string();
+  const Outcome exported = run(command);
+  ASSERT_EQ(exported.exit_code, 0) << exported.text;
+  EXPECT_THAT(exported.text, HasSubstr("the flight    8: CL, Cm\n"));
+  EXPECT_THAT(exported.text, HasSubstr("an estimate"));
+  EXPECT_THAT(exported.text, HasSubstr("thrust at full throttle"));
+  EXPECT_THAT(exported.text, HasSubstr("trimmed at 16 m/s"));
+  EXPECT_THAT(exported.text, HasSubstr("short period"));
+  EXPECT_THAT(exported.text, HasSubstr("not how this one does"));
+  const std::string xml = read_file(in_out("jsbsim.xml"));
+  EXPECT_THAT(xml, HasSubstr("<description>identified, 95 %: 4.4 to 4.8</description>"));
+  EXPECT_THAT(xml, HasSubstr("<description>estimate: Raymer"));
+  EXPECT_THAT(xml, HasSubstr("aero/coefficient/Cn_beta"));
+  const auto summary = nlohmann::json::parse(run(command + " --quiet --json").text);
+  EXPECT_EQ(summary["jsbsim"]["trimmed"], true);
+  EXPECT_EQ(summary["jsbsim"]["flies_as_predicted"], true);
+  EXPECT_EQ(summary["jsbsim"]["sources"]["CL_alpha"]["from"], "the flight");
+  EXPECT_EQ(summary["jsbsim"]["sources"]["CD_0"]["from"], "an estimate");
+}
+
+// The subject.toml of an identification lies beside its estimate.json, which has the intervals and the grades.
+TEST_F(Export, OfASubjectTakesIntervalsFromTheEstimateBesideIt) {
+  nlohmann::json estimate = {{"subject", "aerosonde"},
+                             {"method", "OLS"},
+                             {"parameters", all_parameters()},
+                             {"covariance", std::vector(29, std::vector(29, 0.0))},
+                             {"verdict", ""},
+                             {"warnings", nlohmann::json::array()}};
+  estimate.update(effective());
+  ASSERT_EQ(run("export " + file("s.toml", "[subject]\nbuiltin = \"aerosonde\"\n") + " --format toml --estimate-file " +
+                file("e.json", estimate.dump()) + out())
+                .exit_code,
+            0);
+  const std::string subject = file("subject.toml", read_file(in_out("subject.toml")));
+  static_cast<void>(file("estimate.json", estimate.dump()));
+  ASSERT_EQ(run("export " + subject + " --format jsbsim" + out()).exit_code, 0);
+  const std::string xml = read_file(in_out("jsbsim.xml"));
+  EXPECT_THAT(xml, HasSubstr("<description>identified, 95 %: 1 to 9</description>"));
+  EXPECT_THAT(xml, HasSubstr("must not be taken for physical constants"));
+  // Another aircraft's estimate says nothing of this one.
+  estimate["subject"] = "another";
+  static_cast<void>(file("estimate.json", estimate.dump()));
+  ASSERT_EQ(run("export " + subject + " --format jsbsim" + out()).exit_code, 0);
+  EXPECT_THAT(read_file(in_out("jsbsim.xml")), testing::Not(HasSubstr("95 %")));
 }
 
 constexpr const char* kEffectiveSentence =
@@ -141,9 +214,14 @@ TEST_F(Export, GradesNothingThatWasNotJudged) {
 TEST_F(Export, RefusesAnEstimateOfWhichNothingMayBeUsed) {
   expect_refusal(with(nlohmann::json::array({parameter("CL_alpha", 4.5, "rejected")}), "all", effective()),
                  "e.json: holds no usable parameter of the study's model");
-  // A simulator would take what was rejected for zero.
-  expect_refusal(with(all_parameters("Cm_", "rejected"), "jsbsim", effective()),
-                 "JSBSim needs every parameter, these have no value: Cm_0, Cm_alpha, Cm_q, Cm_de");
+  // What was rejected is not in the file: a simulator gets the study's.
+  ASSERT_EQ(run(with(all_parameters("Cm_", "rejected"), "jsbsim", effective())).exit_code, 0);
+  const std::string xml = read_file(in_out("jsbsim.xml"));
+  EXPECT_THAT(xml, HasSubstr("the study's, not identified"));
+  EXPECT_THAT(xml, HasSubstr("must not be taken for physical constants"));
+  // Of an aircraft of which nothing is known there is none.
+  expect_refusal("export " + file("own.toml", kOwnAircraft) + " --format jsbsim" + out(),
+                 "no parameter of its model is known");
 }
 
 // A term that the flight did not excite is held and keeps its status where the coefficient is rejected: lift by the

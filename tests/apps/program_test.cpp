@@ -177,9 +177,12 @@ TEST_F(Program, ExportsABuiltInSubjectForOtherPrograms) {
   EXPECT_THAT(read_file(folder_ / "out" / "model.csv"), HasSubstr("CL,\"alpha\",CL_alpha,1/rad,"));
   // The exported subject is one that the program reads.
   EXPECT_EQ(run("export " + (folder_ / "out" / "subject.toml").string() + " --format csv" + out()).exit_code, 0);
-  expect_refusal("export " + file("unknown.toml", "[subject]\nbuiltin = \"aerosonde\"\nmodel = { CL = [\"1\"] }\n") +
-                     " --format jsbsim" + out(),
-                 "these have no value: CL_0");
+  // One without a value is left to an estimate.
+  ASSERT_EQ(run("export " + file("unknown.toml", "[subject]\nbuiltin = \"aerosonde\"\nmodel = { CL = [\"1\"] }\n") +
+                " --format jsbsim" + out())
+                .exit_code,
+            0);
+  EXPECT_THAT(read_file(folder_ / "out" / "jsbsim.xml"), HasSubstr("estimate: DATCOM"));
 }
 
 TEST_F(Program, FollowsALogThatIsStillBeingWritten) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/aircraft/export/flight_condition.hpp"
 #include "veridyn/aircraft/identification/evidence/contradicted_flight.hpp"
 #include "veridyn/aircraft/identification/evidence/recording_evidence.hpp"
 #include "veridyn/aircraft/identification/fit/accelerometer_place.hpp"
@@ -307,6 +308,7 @@ std::vector<estimation::Evidence> nothing_identified(std::span<const Coefficient
 estimation::Estimate summarise(std::span<const FlightStudy> studies, const FlightAnalysis& analysis) {
   estimation::Estimate estimate = estimate_of(studies.front(), analysis);
   for (const OtherParameter& other : analysis.others.parameters) estimate.other_methods.push_back(other.estimate);
+  add_flight_condition(analysis.flights, estimate);
   estimate.verdict = verdict_text(analysis.coefficients);
   for (const PredictedQuantity& q : analysis.validation.quantities) {
     estimate.validation[q.name] = measure_of(q.fit, q.unit);

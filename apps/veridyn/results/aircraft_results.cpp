@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "apps/veridyn/results/analysis_results.hpp"
 #include "apps/veridyn/results/open_loop_results.hpp"
 #include "apps/veridyn/run/version.hpp"
-#include "veridyn/aircraft/model/jsbsim.hpp"
+#include "veridyn/aircraft/export/jsbsim_export.hpp"
 #include "veridyn/estimation/judgement/subject_grades.hpp"
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/numerics/threads/parallel.hpp"
@@ -150,9 +151,14 @@ void write_identification(const StudyRun& run, OutputFolder& folder, const Fligh
   if (analysis.uncertainty.available()) folder.write("coefficient_uncertainty.csv", to_csv(analysis.uncertainty));
   folder.write("subject.toml",
                estimation::graded_toml(write_subject_toml(analysis.identified), analysis.estimate.judgement));
-  // JSBSim flies a complete model only; `veridyn export` says what is missing.
-  if (analysis.identified.inertia && analysis.identified.model.unknown_parameters().empty())
-    folder.write("jsbsim.xml", graded_xml(write_jsbsim(analysis.identified), analysis.estimate.judgement));
+  // `veridyn export` writes one of what is partly known, and flies it.
+  const Subject& identified = analysis.identified;
+  const std::optional<ExportCondition> condition = condition_of(analysis.estimate);
+  if (condition && identified.inertia && identified.model.unknown_parameters().empty())
+    folder.write(
+        "jsbsim.xml",
+        graded_xml(jsbsim_file(complete_subject(identified, identified, &analysis.estimate, *condition), nullptr),
+                   analysis.estimate.judgement));
 }
 
 }  // namespace

@@ -17,13 +17,14 @@ std::optional<estimation::Estimate> given_estimate(const StudyRun& run) {
 bool is_graded(const std::optional<estimation::Estimate>& estimate) { return estimate && !estimate->evidence.empty(); }
 
 void publish_export(const StudyRun& run, OutputFolder& folder, std::vector<std::filesystem::path> inputs,
-                    const std::optional<estimation::Estimate>& estimate, const std::string& note) {
+                    const std::optional<estimation::Estimate>& estimate, const MoreResults& more) {
   const std::vector<std::string> files = folder.files();
-  folder.publish(run.record(0, std::move(inputs)), run.options(),
-                 Summary::object({{"folder", folder.path().string()}, {"files", files}}));
+  std::vector<Summary::Member> summary = {{"folder", folder.path().string()}, {"files", files}};
+  summary.insert(summary.end(), more.summary.begin(), more.summary.end());
+  folder.publish(run.record(0, std::move(inputs)), run.options(), Summary::object(std::move(summary)));
   for (const std::string& name : files)
     print_line(run.options(), fmt::format("wrote {}", (folder.path() / name).string()));
-  if (!note.empty()) print_line(run.options(), note);
+  for (const std::string& line : more.lines) print_line(run.options(), line);
   if (is_graded(estimate)) print_line(run.options(), estimation::sentence_of(*estimate));
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "apps/veridyn/results/analysis_results.hpp"
 #include "apps/veridyn/run/domains.hpp"
 #include "apps/veridyn/run/output_folder.hpp"
 #include "veridyn/estimation/result/estimate.hpp"
@@ -16,9 +17,9 @@ namespace veridyn::app {
 /// Whether an estimate says for which purposes its numbers may be used.
 [[nodiscard]] bool is_graded(const std::optional<estimation::Estimate>& estimate);
 
-/// Publishes an export whose files are written: its record with what was read beyond the study, a line a file, `note`
-/// where there is one, and the grades.
+/// Publishes an export whose files are written: its record with what was read beyond the study, a line a file, `more`
+/// where there is something, and the grades.
 void publish_export(const StudyRun& run, OutputFolder& folder, std::vector<std::filesystem::path> inputs,
-                    const std::optional<estimation::Estimate>& estimate, const std::string& note = "");
+                    const std::optional<estimation::Estimate>& estimate, const MoreResults& more = {});
 
 }  // namespace veridyn::app

@@ -48,7 +48,7 @@ class JsbsimAircraft {
     values_["fcs/elevator-pos-rad"] = controls.de;
     values_["fcs/left-aileron-pos-rad"] = controls.da;
     values_["fcs/rudder-pos-rad"] = controls.dr;
-    values_["fcs/engine-throttle-norm"] = controls.throttle;
+    values_["fcs/throttle-pos-norm"] = controls.throttle;
     values_["fcs/rotor-speed-norm"] = rotor_speed_share;
 
     const pugi::xml_node reactions = root_.child("external_reactions");

@@ -188,7 +188,8 @@ MomentLengths moment_lengths(const Subject& s) {
           .yaw = length(s.lengths.yaw, "metrics/bw-ft")};
 }
 
-void write_aerodynamics(pugi::xml_node root, const Subject& s, const Expression& thrust_lbs) {
+void write_aerodynamics(pugi::xml_node root, const Subject& s, const Expression& thrust_lbs,
+                        const std::map<std::string, std::string>& origins) {
   pugi::xml_node aero = root.append_child("aerodynamics");
   const MomentLengths length = moment_lengths(s);
   function(aero, "aero/function/p_n", "b p / (2 Va)", normalised_rate(length.roll, "velocities/p-aero-rad_sec"));
@@ -206,7 +207,10 @@ void write_aerodynamics(pugi::xml_node root, const Subject& s, const Expression&
       const Term& term = model->terms[i];
       std::vector<Expression> factors = {value(model->values[i])};
       for (const Factor& f : term.factors) factors.push_back(factor(f));
-      function(aero, coefficient_property(parameter_name(model->coefficient, term)), "", product(std::move(factors)));
+      const std::string name = parameter_name(model->coefficient, term);
+      const auto origin = origins.find(name);
+      function(aero, coefficient_property(name), origin == origins.end() ? "" : origin->second,
+               product(std::move(factors)));
     }
     function(aero, coefficient_property(name_of(model->coefficient)), "", with_stall(*model, s.model.stall));
   }
@@ -247,7 +251,7 @@ Expression polynomial_in(const std::vector<double>& coefficients, const Expressi
 }
 
 ThrustFunctions thrust_functions(const Propulsion& p) {
-  const Expression throttle = property("fcs/engine-throttle-norm");
+  const Expression throttle = property("fcs/throttle-pos-norm");
   const Expression speed = product({property("velocities/u-aero-fps"), value(kFoot)});
   const Expression rho = product({property("atmosphere/rho-slugs_ft3"), value(kSlugPerCubicFoot)});
   const double per_pound = 1.0 / kPound, per_pound_foot = 1.0 / (kPound * kFoot);
@@ -287,6 +291,22 @@ ThrustFunctions thrust_functions(const Propulsion& p) {
   return out;
 }
 
+/// An engine without power, so that JSBSim has a throttle: thrust is an external reaction to it.
+void write_engine(pugi::xml_node root, const Propulsion& p) {
+  pugi::xml_node engine = root.append_child("propulsion").append_child("engine");
+  engine.append_attribute("name") = "throttle";
+  pugi::xml_node motor = engine.append_child("electric_engine");
+  motor.append_attribute("name") = "throttle";
+  measure(motor, "power", 0.0, "WATTS");
+  pugi::xml_node thruster = engine.append_child("thruster");
+  thruster.append_attribute("name") = "none";
+  location(thruster, nullptr, p.position);
+  pugi::xml_node orient = thruster.append_child("orient");
+  orient.append_attribute("unit") = "DEG";
+  for (const char* angle : {"roll", "pitch", "yaw"}) orient.append_child(angle).text().set("0");
+  thruster.append_child("direct").append_attribute("name") = "none";
+}
+
 void write_external_reactions(pugi::xml_node root, const Propulsion& p, const ThrustFunctions& functions) {
   pugi::xml_node reactions = root.append_child("external_reactions");
   if (p.kind == PropulsionKind::kPropeller) {
@@ -313,12 +333,24 @@ void write_external_reactions(pugi::xml_node root, const Propulsion& p, const Th
 
 // ----------------------------------------------------------------------------------------------- flight control
 
-void write_surface(pugi::xml_node control, const std::string& name, const std::string& output, const Actuator& a) {
+struct SurfaceNames {
+  std::string name, trim, output;
+};
+
+void write_surface(pugi::xml_node control, const SurfaceNames& names, const Actuator& a) {
+  const std::string& name = names.name;
   pugi::xml_node channel = control.append_child("channel");
   channel.append_attribute("name") = name.c_str();
+  pugi::xml_node command = channel.append_child("summer");
+  command.append_attribute("name") = fmt::format("fcs/{}-and-trim-cmd-norm", name).c_str();
+  command.append_child("input").text().set(fmt::format("fcs/{}-cmd-norm", name).c_str());
+  command.append_child("input").text().set(names.trim.c_str());
+  pugi::xml_node full = command.append_child("clipto");
+  full.append_child("min").text().set("-1");
+  full.append_child("max").text().set("1");
   pugi::xml_node scale = channel.append_child("aerosurface_scale");
   scale.append_attribute("name") = fmt::format("fcs/{}-command-rad", name).c_str();
-  scale.append_child("input").text().set(fmt::format("fcs/{}-cmd-norm", name).c_str());
+  scale.append_child("input").text().set(fmt::format("fcs/{}-and-trim-cmd-norm", name).c_str());
   pugi::xml_node range = scale.append_child("range");
   range.append_child("min").text().set(fmt::format("{:.17g}", a.lower).c_str());
   range.append_child("max").text().set(fmt::format("{:.17g}", a.upper).c_str());
@@ -337,24 +369,21 @@ void write_surface(pugi::xml_node control, const std::string& name, const std::s
   pugi::xml_node clip = actuator.append_child("clipto");
   clip.append_child("min").text().set(fmt::format("{:.17g}", a.lower).c_str());
   clip.append_child("max").text().set(fmt::format("{:.17g}", a.upper).c_str());
-  actuator.append_child("output").text().set(output.c_str());
+  actuator.append_child("output").text().set(names.output.c_str());
 }
 
 void write_flight_control(pugi::xml_node root, const Subject& s) {
   pugi::xml_node control = root.append_child("flight_control");
   control.append_attribute("name") = "surfaces and throttle";
-  pugi::xml_node throttle = control.append_child("property");
-  throttle.append_attribute("value") = "0";
-  throttle.text().set("fcs/engine-throttle-norm");
-  write_surface(control, "elevator", "fcs/elevator-pos-rad", s.elevator);
-  write_surface(control, "aileron", "fcs/left-aileron-pos-rad", s.aileron);
-  write_surface(control, "rudder", "fcs/rudder-pos-rad", s.rudder);
+  write_surface(control, {"elevator", "fcs/pitch-trim-cmd-norm", "fcs/elevator-pos-rad"}, s.elevator);
+  write_surface(control, {"aileron", "fcs/roll-trim-cmd-norm", "fcs/left-aileron-pos-rad"}, s.aileron);
+  write_surface(control, {"rudder", "fcs/yaw-trim-cmd-norm", "fcs/rudder-pos-rad"}, s.rudder);
   if (s.propulsion.kind == PropulsionKind::kPropeller) {
     pugi::xml_node channel = control.append_child("channel");
     channel.append_attribute("name") = "rotor";
     pugi::xml_node lag = channel.append_child("lag_filter");
     lag.append_attribute("name") = "fcs/rotor-speed-norm";
-    lag.append_child("input").text().set("fcs/engine-throttle-norm");
+    lag.append_child("input").text().set("fcs/throttle-pos-norm");
     lag.append_child("c1").text().set(fmt::format("{:.17g}", 1.0 / std::max(1e-3, s.propulsion.time_constant)).c_str());
   }
 }
@@ -399,7 +428,7 @@ void write_body(pugi::xml_node root, const Subject& s) {
 
 }  // namespace
 
-std::string write_jsbsim(const Subject& s) {
+std::string write_jsbsim(const Subject& s, const JsbsimNotes& notes) {
   if (const std::vector<std::string> unknown = s.model.unknown_parameters(); !unknown.empty()) {
     throw InputError(s.name,
                      fmt::format("JSBSim needs every parameter, these have no value: {}", fmt::join(unknown, ", ")));
@@ -417,15 +446,16 @@ std::string write_jsbsim(const Subject& s) {
   header.append_child("author").text().set("Veridyn");
   header.append_child("description").text().set(s.description.empty() ? s.name.c_str() : s.description.c_str());
   header.append_child("note").text().set(
-      fmt::format("Deflections: {}. Throttle: fcs/engine-throttle-norm, 0 to 1.",
+      fmt::format("Deflections: {}. Throttle: fcs/throttle-cmd-norm, 0 to 1.",
                   s.sign_convention.empty() ? "sign convention not stated" : s.sign_convention)
           .c_str());
+  for (const std::string& note : notes.header) header.append_child("note").text().set(note.c_str());
   write_body(root, s);
   const ThrustFunctions thrust = thrust_functions(s.propulsion);
   write_external_reactions(root, s.propulsion, thrust);
-  root.append_child("propulsion");
+  write_engine(root, s.propulsion);
   write_flight_control(root, s);
-  write_aerodynamics(root, s, thrust.thrust_lbs);
+  write_aerodynamics(root, s, thrust.thrust_lbs, notes.parameters);
   std::ostringstream text;
   document.save(text, "  ");
   return text.str();
