@@ -55,6 +55,8 @@ std::string mapping_section(const recording::MappedRecording& mapped, bool vehic
       text += fmt::format("  {:<18} <- {} ({:.1f} Hz){}\n", origin.channel, origin.source, origin.rate_Hz,
                           origin.note.empty() ? "" : ", " + origin.note);
     }
+    for (const recording::ChannelOrigin& other : mapped.left)
+      text += fmt::format("  left: {} ({:.1f} Hz), which is {} too\n", other.source, other.rate_Hz, other.channel);
   }
   for (const std::string& note : mapped.notes) text += fmt::format("  note: {}\n", note);
   return text;
@@ -196,6 +198,7 @@ int inspect(const Arguments& arguments) {
   for (const std::string& warning : recording.warnings) text += fmt::format("note: {}\n", warning);
   for (const auto& [key, value] : recording.information) text += fmt::format("{}: {}\n", key, value);
 
+  text += mapping_section(mapped, vehicle, summary);
   text += fmt::format("\n{:<44} {:<8} {:>8} {:>9} {:>5} {:>7} {:>8}  range\n", "channel", "unit", "samples",
                       "rate [Hz]", "gaps", "gap [s]", "missing");
   for (const Channel& channel : recording.channels()) {
@@ -213,7 +216,6 @@ int inspect(const Arguments& arguments) {
         channel.rate_Hz(), gaps.size(), gap_time(channel), range.missing,
         std::isfinite(range.low) ? fmt::format("{:.6g} .. {:.6g}", range.low, range.high) : "no numeric values");
   }
-  text += mapping_section(mapped, vehicle, summary);
   if (vehicle) text += axis_section(mapped, summary);
   if (arguments.flag("--events")) {
     text += "\nevents:\n";

@@ -30,6 +30,7 @@ struct MappedRecording {
   Recording recording;
   std::string log_kind;  ///< "ArduPilot", "PX4", "MAVLink", "standard names", "study"
   std::vector<ChannelOrigin> origins;
+  std::vector<ChannelOrigin> left = {};  ///< other channels of the log that are the same quantity and were not taken
   /// Standard deviation that the calibration of a channel leaves, by channel: an error that all samples share.
   std::vector<std::pair<std::string, double>> calibration_sigma;
   std::vector<std::string> notes;  ///< sensors that are there but dead, estimates that were not taken for sensors, ...

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/aircraft/sensors/mapped_log.hpp"
@@ -94,11 +95,26 @@ TEST(ArduPilotMap, TakesTheVelocityOfTheAutopilotsFilterWhereGpsHasNone) {
               ElementsAre(DoubleNear(10, 1e-6), DoubleNear(20, 1e-6)));
 }
 
+// Four samples of the filter for two of GPS.
+TEST(ArduPilotMap, TakesTheVelocityOfTheAutopilotsFilterWhereItIsFaster) {
+  const auto slow = [](std::string name, std::vector<double> value) {
+    return make_channel(std::move(name), "1", make_time_base({0.0, 0.2}), std::move(value));
+  };
+  const MappedRecording mapped =
+      map(log_with({channel("XKF1.VN", "m/s", {1, 2, 3}), channel("XKF1.VE", "m/s", {3, 4, 5}),
+                    channel("XKF1.VD", "m/s", {5, 6, 7}), slow("GPS.Spd", {10, 20}), slow("GPS.GCrs", {0, 0.001})}));
+  EXPECT_THAT(mapped.recording.at("vel_north").value, ElementsAre(1, 2, 3));
+  const auto& origin = *std::ranges::find(mapped.origins, "vel_north", &recording::ChannelOrigin::channel);
+  EXPECT_EQ(origin.note, "autopilot's EKF3, which is faster than GPS (5 Hz)");
+  EXPECT_EQ(mapped.left.front().source, "GPS.Spd");
+}
+
 TEST(ArduPilotMap, PassesOverASensorThatNeverChanges) {
   const MappedRecording mapped =
       map(log_with({channel("IMU.AccX", "m/s^2", {0, 1}), channel("ARSP.Airspeed", "m/s", {0, 0}),
                     channel("CTUN.As", "m/s", {14, 15})}));
-  EXPECT_THAT(mapped.recording.at("airspeed").value, ElementsAre(14, 15));
+  EXPECT_THAT(mapped.recording.at("dynamic_pressure").value,
+              ElementsAre(DoubleNear(0.5 * 1.225 * 196.0, 1e-9), DoubleNear(0.5 * 1.225 * 225.0, 1e-9)));
   EXPECT_THAT(mapped.notes, ::testing::Contains(HasSubstr("ARSP.Airspeed is 0 throughout")));
 }
 

@@ -29,8 +29,9 @@ TEST(MavlinkMap, GivesTheChannelsOfATelemetryLogTheirStandardNames) {
   EXPECT_NEAR(value("roll", 5), 0.1 * std::sin(1.5), 1e-7);
   EXPECT_NEAR(value("vel_east", 7), -2.57, 1e-9);
   EXPECT_NEAR(value("alt", 0), 505.0, 1e-9) << "of GPS";
-  EXPECT_NEAR(value("airspeed", 5), 20.0 + std::sin(1.5), 1e-5);
-  EXPECT_NEAR(value("dynamic_pressure", 5), 100.0 * (2.5 + std::sin(1.5)), 1e-3);
+  EXPECT_NEAR(value("dynamic_pressure", 5), 0.5 * 1.225 * std::pow(20.0 + std::sin(1.5), 2), 1e-3)
+      << "of the airspeed that the autopilot calibrated, not of the sensor's pressure";
+  EXPECT_EQ(mapped.recording.find("airspeed"), nullptr);
   EXPECT_EQ(mapped.recording.find("aileron"), nullptr) << "no parameter says which servo it is";
   // SERVO2_FUNCTION = 19; 1550 us of 1500 to 2000.
   EXPECT_NEAR(value("elevator", 10), 0.4 * 0.1, 1e-9);

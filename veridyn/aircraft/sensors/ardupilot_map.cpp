@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "veridyn/aircraft/sensors/airspeed_map.hpp"
 #include "veridyn/aircraft/sensors/channel_rules.hpp"
 #include "veridyn/core/constants.hpp"
 
@@ -36,20 +37,10 @@ const std::vector<ChannelRule>& ardupilot_rules() {
       {"roll", "NKF1.Roll", "deg", "autopilot's EKF2"},
       {"pitch", "NKF1.Pitch", "deg", "autopilot's EKF2"},
       {"yaw", "NKF1.Yaw", "deg", "autopilot's EKF2"},
-      {"vel_north", "XKF1.VN", "m/s", "autopilot's EKF3, since GPS gives none"},
-      {"vel_east", "XKF1.VE", "m/s", "autopilot's EKF3, since GPS gives none"},
-      {"vel_down", "XKF1.VD", "m/s", "autopilot's EKF3, since GPS gives none"},
-      {"vel_north", "NKF1.VN", "m/s", "autopilot's EKF2, since GPS gives none"},
-      {"vel_east", "NKF1.VE", "m/s", "autopilot's EKF2, since GPS gives none"},
-      {"vel_down", "NKF1.VD", "m/s", "autopilot's EKF2, since GPS gives none"},
       {"lat", "GPS.Lat", "deg", ""},
       {"lon", "GPS.Lng", "deg", ""},
       {"alt", "BARO.Alt", "m", "barometric"},
       {"alt", "GPS.Alt", "m", "GPS"},
-      {"airspeed", "ARSP.Airspeed", "m/s", "indicated"},
-      {"airspeed", "CTUN.As", "m/s", "indicated"},
-      {"airspeed", "NTUN.Arspd", "m/s", "indicated"},
-      {"dynamic_pressure", "ARSP.DiffPress", "Pa", ""},
       {"static_pressure", "BARO.Press", "Pa", ""},
       {"air_temperature", "ARSP.Temp", "degC", "airspeed sensor"},
       {"mag_x", "MAG.MagX", "mG", ""},
@@ -59,9 +50,38 @@ const std::vector<ChannelRule>& ardupilot_rules() {
   return table;
 }
 
+const std::vector<AirspeedSource>& ardupilot_airspeeds() {
+  static const std::vector<AirspeedSource> table{
+      {"ARSP.Airspeed", AirspeedKind::kEquivalent, "m/s", "of the indicated airspeed"},
+      {"CTUN.As", AirspeedKind::kEquivalent, "m/s", "of the indicated airspeed"},
+      {"NTUN.Arspd", AirspeedKind::kEquivalent, "m/s", "of the indicated airspeed"},
+      {"ARSP.DiffPress", AirspeedKind::kRawPressure, "Pa", "as the sensor gives it, without ARSPD_RATIO"}};
+  return table;
+}
+
+/// The velocity of an autopilot's filter, all components or none, where GPS gives none or it is at least half as fast
+/// again.
+void map_filter_velocity(MapBuilder& builder, const std::string& message, const std::string& filter) {
+  constexpr double kFaster = 1.5;
+  const Channel* gps = builder.alive("GPS.Spd");
+  const Channel* north = builder.alive(message + ".VN");
+  if (north == nullptr || builder.mapped("vel_north")) return;
+  const bool with_gps = gps != nullptr && builder.alive("GPS.GCrs") != nullptr;
+  if (with_gps && north->rate_Hz() < kFaster * gps->rate_Hz()) return;
+  const std::string note = with_gps ? fmt::format("{}, which is faster than GPS ({:.3g} Hz)", filter, gps->rate_Hz())
+                                    : fmt::format("{}, since GPS gives none", filter);
+  builder.apply(std::vector<ChannelRule>{{"vel_north", message + ".VN", "m/s", note},
+                                         {"vel_east", message + ".VE", "m/s", note},
+                                         {"vel_down", message + ".VD", "m/s", note}});
+}
+
 void map_gps_velocity(MapBuilder& builder) {
   const Channel* speed = builder.alive("GPS.Spd");
   const Channel* course = builder.alive("GPS.GCrs");
+  if (builder.mapped("vel_north")) {
+    builder.leave("GPS.Spd", "vel_north");
+    return;
+  }
   if (speed == nullptr || course == nullptr || speed->size() != course->size()) return;
   const Channel* down = builder.alive("GPS.VZ");
   const bool course_in_degrees = course->unit.same_dimension(Unit{});
@@ -240,7 +260,11 @@ void map_servos(MapBuilder& builder, const SurfaceThrows& throws, ServoOutputs o
 }
 
 void map_ardupilot(MapBuilder& builder, const SurfaceThrows& throws) {
+  map_filter_velocity(builder, "XKF1", "autopilot's EKF3");
+  map_filter_velocity(builder, "NKF1", "autopilot's EKF2");
   map_gps_velocity(builder);
+  map_ardupilot_pressure(builder);
+  map_airspeed(builder, ardupilot_airspeeds());
   builder.apply(ardupilot_rules());
   map_servos(builder, throws, ServoOutputs::kDataflash);
   if (builder.log().has("AOA.AOA")) {

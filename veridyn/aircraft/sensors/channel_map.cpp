@@ -70,7 +70,7 @@ MappedRecording map_channels(const Recording& log, const StudyTable& map, const 
   }
   mapped.log_kind = "study";
   mapped = recording::with_standard_channels(std::move(mapped), log, standard_channels(), map);
-  internal::MapBuilder builder(log, mapped);
+  internal::MapBuilder builder(log, mapped, map);
   if (internal::is_ardupilot(log)) {
     mapped.log_kind = "ArduPilot";
     internal::map_ardupilot(builder, throws);
@@ -85,6 +85,7 @@ MappedRecording map_channels(const Recording& log, const StudyTable& map, const 
     if (mapped.log_kind != "PX4") mapped.log_kind = "ROS";
     internal::map_ros(builder);
   }
+  internal::map_table_quaternion(builder);
   mapped = recording::with_recognised_channels(std::move(mapped), log, standard_channels(), channel_aliases(), map);
   mapped = recording::with_channel_map(std::move(mapped), log, standard_channels(), map);
   return mapped;
@@ -94,7 +95,10 @@ namespace internal {
 
 void MapBuilder::apply(std::span<const ChannelRule> rules) {
   for (const ChannelRule& rule : rules) {
-    if (mapped(rule.channel)) continue;
+    if (mapped(rule.channel)) {
+      leave(rule.source, rule.channel);
+      continue;
+    }
     const Channel* raw = alive(rule.source);
     if (raw == nullptr) continue;
     put(rule.channel, standard(rule.channel).unit, raw->time,
@@ -108,6 +112,13 @@ void MapBuilder::put(std::string channel, const std::string& unit, TimeBase time
   Channel made = make_channel(std::move(channel), unit, std::move(time), std::move(value));
   mapped_.origins.push_back({made.name, std::move(source), made.rate_Hz(), std::move(note)});
   mapped_.recording.set(std::move(made));
+}
+
+void MapBuilder::leave(std::string source, std::string channel) {
+  const Channel* raw = log_.find(source);
+  const auto origin = std::ranges::find(mapped_.origins, channel, &recording::ChannelOrigin::channel);
+  if (raw == nullptr || (origin != mapped_.origins.end() && origin->source == source)) return;
+  mapped_.left.push_back({std::move(channel), std::move(source), raw->rate_Hz(), ""});
 }
 
 void MapBuilder::note(std::string text) {

@@ -23,22 +23,29 @@ struct ChannelRule {
 /// View of a log and of what is mapped of it so far, to which it adds.
 class MapBuilder {
  public:
-  MapBuilder(const Recording& log, MappedRecording& mapped) : log_(log), mapped_(mapped) {}
+  /// @param given  the study's `[data.map]`
+  MapBuilder(const Recording& log, MappedRecording& mapped, const StudyTable& given)
+      : log_(log), mapped_(mapped), given_(given) {}
 
-  /// Applies the first usable rule of each channel that is not mapped yet.
+  /// Applies the first usable rule of each channel that is not mapped yet; the others are left.
   void apply(std::span<const ChannelRule> rules);
   /// Adds a channel that was computed from others.
   void put(std::string channel, const std::string& unit, TimeBase time, std::vector<double> value, std::string source,
            std::string note = {});
   void note(std::string text);
+  /// Says of a channel of the log that it was not taken for `channel`, which is another's.
+  void leave(std::string source, std::string channel);
   /// The log's channel when it is there and changes at all, else null; dead channels are noted once.
   [[nodiscard]] const Channel* alive(std::string_view name);
   [[nodiscard]] const Recording& log() const { return log_; }
   [[nodiscard]] bool mapped(std::string_view channel) const { return mapped_.recording.has(channel); }
+  /// Whether the study maps a channel itself.
+  [[nodiscard]] bool given(std::string_view channel) const { return given_.has(channel); }
 
  private:
   const Recording& log_;
   MappedRecording& mapped_;
+  const StudyTable& given_;
 };
 
 using recording::interpolated;
@@ -66,6 +73,10 @@ enum class ServoOutputs { kDataflash, kMavlink };
 /// are assumed of a log of the autopilot itself; of telemetry, which may be of another, nothing is.
 void map_servos(MapBuilder& builder, const SurfaceThrows& throws, ServoOutputs outputs);
 /// Roll, pitch and yaw of a quaternion, scalar first.
-void put_attitude(MapBuilder& builder, const std::array<const Channel*, 4>& q, const std::string& source);
+void put_attitude(MapBuilder& builder, const std::array<const Channel*, 4>& q, const std::string& source,
+                  const std::string& note = "autopilot's filter");
+/// The attitude of a quaternion among columns of a table, unless roll, pitch or yaw are there or the study maps one:
+/// `q0`..`q3`, `q[0]`..`q[3]` or `qw`, `qx`, `qy`, `qz` of unit length, from the body to north, east, down.
+void map_table_quaternion(MapBuilder& builder);
 
 }  // namespace veridyn::aircraft::internal

@@ -1,6 +1,7 @@
 #include <array>
 #include <cmath>
 
+#include "veridyn/aircraft/sensors/airspeed_map.hpp"
 #include "veridyn/aircraft/sensors/channel_rules.hpp"
 #include "veridyn/core/constants.hpp"
 
@@ -43,10 +44,6 @@ const std::vector<ChannelRule>& mavlink_rules() {
       {"lat", "GLOBAL_POSITION_INT.lat", "deg", "autopilot's filter"},
       {"lon", "GLOBAL_POSITION_INT.lon", "deg", "autopilot's filter"},
       {"alt", "GLOBAL_POSITION_INT.alt", "m", "autopilot's filter"},
-      {"airspeed", "AIRSPEED.airspeed", "m/s", "indicated"},
-      {"airspeed", "VFR_HUD.airspeed", "m/s", "indicated"},
-      {"dynamic_pressure", "SCALED_PRESSURE.press_diff", "mbar", ""},
-      {"dynamic_pressure", "HIGHRES_IMU.diff_pressure", "mbar", ""},
       {"static_pressure", "SCALED_PRESSURE.press_abs", "mbar", ""},
       {"static_pressure", "HIGHRES_IMU.abs_pressure", "mbar", ""},
       {"air_temperature", "AIRSPEED.temperature", "degC", "airspeed sensor"},
@@ -59,6 +56,16 @@ const std::vector<ChannelRule>& mavlink_rules() {
       {"mag_z", "RAW_IMU.zmag", "mG", "as ArduPilot fills it"},
       {"engine_speed", "RPM.rpm1", "rpm", ""},
   };
+  return table;
+}
+
+/// What the autopilot calibrated before what the sensor gives.
+const std::vector<AirspeedSource>& mavlink_airspeeds() {
+  static const std::vector<AirspeedSource> table{
+      {"AIRSPEED.airspeed", AirspeedKind::kEquivalent, "m/s", "of the indicated airspeed"},
+      {"VFR_HUD.airspeed", AirspeedKind::kEquivalent, "m/s", "of the indicated airspeed"},
+      {"SCALED_PRESSURE.press_diff", AirspeedKind::kRawPressure, "mbar", "as the sensor gives it"},
+      {"HIGHRES_IMU.diff_pressure", AirspeedKind::kRawPressure, "mbar", "as the sensor gives it"}};
   return table;
 }
 
@@ -132,6 +139,7 @@ bool is_mavlink(const Recording& log) {
 
 void map_mavlink(MapBuilder& builder, const SurfaceThrows& throws) {
   map_local_velocity(builder);
+  map_airspeed(builder, mavlink_airspeeds());
   builder.apply(mavlink_rules());
   map_course_velocity(builder);
   map_quaternion(builder);

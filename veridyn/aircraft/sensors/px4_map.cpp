@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "veridyn/aircraft/sensors/airspeed_map.hpp"
 #include "veridyn/aircraft/sensors/channel_rules.hpp"
 
 namespace veridyn::aircraft::internal {
@@ -39,11 +40,6 @@ const std::vector<ChannelRule>& px4_rules() {
       {"lat", "vehicle_gps_position.lat", "deg", "before 1.14", 1e-7},
       {"lon", "vehicle_gps_position.lon", "deg", "before 1.14", 1e-7},
       {"alt", "vehicle_gps_position.alt", "mm", "before 1.14"},
-      {"airspeed", "airspeed_validated.true_airspeed_m_s", "m/s", "true; 1.11 and later"},
-      {"airspeed", "airspeed.true_airspeed_m_s", "m/s", "true"},
-      {"airspeed", "airspeed.indicated_airspeed_m_s", "m/s", "indicated"},
-      {"dynamic_pressure", "differential_pressure.differential_pressure_filtered_pa", "Pa", "before 1.14"},
-      {"dynamic_pressure", "differential_pressure.differential_pressure_pa", "Pa", "1.13 and later"},
       {"static_pressure", "vehicle_air_data.baro_pressure_pa", "Pa", ""},
       {"static_pressure", "sensor_baro.pressure", "mbar", "before 1.13"},
       {"air_temperature", "airspeed.air_temperature_celsius", "degC", ""},
@@ -51,6 +47,33 @@ const std::vector<ChannelRule>& px4_rules() {
       {"air_density", "vehicle_air_data.rho", "kg/m^3", ""},
   };
   return table;
+}
+
+/// What the autopilot checked and corrected before what the sensor gives.
+const std::vector<AirspeedSource>& px4_airspeeds() {
+  static const std::vector<AirspeedSource> table{
+      {"airspeed_validated.true_airspeed_m_s", AirspeedKind::kTrue, "m/s", "true, validated; 1.11 and later"},
+      {"airspeed_validated.calibrated_airspeed_m_s", AirspeedKind::kEquivalent, "m/s", "of the calibrated airspeed"},
+      {"airspeed.true_airspeed_m_s", AirspeedKind::kTrue, "m/s", "true"},
+      {"airspeed.indicated_airspeed_m_s", AirspeedKind::kEquivalent, "m/s", "of the indicated airspeed"},
+      {"differential_pressure.differential_pressure_filtered_pa", AirspeedKind::kRawPressure, "Pa",
+       "as the sensor gives it; before 1.14"},
+      {"differential_pressure.differential_pressure_pa", AirspeedKind::kRawPressure, "Pa",
+       "as the sensor gives it; 1.13 and later"}};
+  return table;
+}
+
+/// The velocity of the autopilot's filter, all components or none, where it is at least half as fast again as GPS.
+void map_filter_velocity(MapBuilder& builder) {
+  constexpr double kFaster = 1.5;
+  const Channel* gps = builder.alive("vehicle_gps_position.vel_n_m_s");
+  const Channel* north = builder.alive("vehicle_local_position.vx");
+  if (gps == nullptr || north == nullptr || builder.mapped("vel_north")) return;
+  if (north->rate_Hz() < kFaster * gps->rate_Hz()) return;
+  const std::string note = fmt::format("autopilot's filter, which is faster than GPS ({:.3g} Hz)", gps->rate_Hz());
+  builder.apply(std::vector<ChannelRule>{{"vel_north", "vehicle_local_position.vx", "m/s", note},
+                                         {"vel_east", "vehicle_local_position.vy", "m/s", note},
+                                         {"vel_down", "vehicle_local_position.vz", "m/s", note}});
 }
 
 void map_attitude(MapBuilder& builder) {
@@ -99,7 +122,8 @@ void map_controls(MapBuilder& builder, const SurfaceThrows& throws) {
 
 }  // namespace
 
-void put_attitude(MapBuilder& builder, const std::array<const Channel*, 4>& q, const std::string& source) {
+void put_attitude(MapBuilder& builder, const std::array<const Channel*, 4>& q, const std::string& source,
+                  const std::string& note) {
   const std::size_t n = q[0]->size();
   std::vector<double> roll(n);
   std::vector<double> pitch(n);
@@ -113,9 +137,9 @@ void put_attitude(MapBuilder& builder, const std::array<const Channel*, 4>& q, c
     pitch[i] = std::asin(std::min(1.0, std::max(-1.0, 2.0 * (w * y - z * x))));
     yaw[i] = std::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
   }
-  builder.put("roll", "rad", q[0]->time, std::move(roll), source, "autopilot's filter");
-  builder.put("pitch", "rad", q[0]->time, std::move(pitch), source, "autopilot's filter");
-  builder.put("yaw", "rad", q[0]->time, std::move(yaw), source, "autopilot's filter");
+  builder.put("roll", "rad", q[0]->time, std::move(roll), source, note);
+  builder.put("pitch", "rad", q[0]->time, std::move(pitch), source, note);
+  builder.put("yaw", "rad", q[0]->time, std::move(yaw), source, note);
 }
 
 bool is_px4(const Recording& log) {
@@ -126,6 +150,8 @@ bool is_px4(const Recording& log) {
 }
 
 void map_px4(MapBuilder& builder, const SurfaceThrows& throws) {
+  map_filter_velocity(builder);
+  map_airspeed(builder, px4_airspeeds());
   builder.apply(px4_rules());
   map_attitude(builder);
   map_controls(builder, throws);
