@@ -115,6 +115,22 @@ TEST(Segments, FirstBlockIsForIdentificationWhateverTheShare) {
   EXPECT_EQ(s.identification.size(), 1u);
 }
 
+// All of an input in the second block, which the share alone would hold out; an input that is even changes nothing.
+TEST(Segments, HoldOutLeavesHalfOfEachInput) {
+  const std::vector<TimeSpan> excited{{0.0, 30.0}};
+  const SegmentOptions options{.holdout = 0.4, .block_s = 10.0, .guard_s = 0.0};
+  const InputShare even = [](const TimeSpan& span) { return span.duration(); };
+  const InputShare once = [](const TimeSpan& span) { return span.contains(15.0) ? 1.0 : 0.0; };
+  const auto held = [&](std::vector<InputShare> inputs) {
+    return assign_blocks(excited, options, Neighbours::kSeparate, 1.0, inputs).holdout;
+  };
+  ASSERT_EQ(held({}).size(), 1u);
+  EXPECT_EQ(held({}).front().begin, 10.0);
+  EXPECT_EQ(held({even}).front().begin, 10.0);
+  ASSERT_EQ(held({even, once}).size(), 1u);
+  EXPECT_EQ(held({even, once}).front().begin, 20.0);
+}
+
 TEST(Segments, BlocksThatTheGuardMakesTooShortAreDropped) {
   const AssignedBlocks s =
       assign_blocks(std::vector<TimeSpan>{{0, 30}}, {.holdout = 1.0 / 3.0, .block_s = 10.0, .guard_s = 4.6},

@@ -160,9 +160,40 @@ std::vector<TimeSpan> blocks(const TimeSpan& span, double block_s) {
   return result;
 }
 
+namespace {
+
+/// What of each input the hold-out has so far, of all that there is.
+class HeldInputs {
+ public:
+  HeldInputs(std::span<const InputShare> inputs, std::span<const TimeSpan> excited)
+      : inputs_(inputs), total_(inputs.size(), 0.0), held_(inputs.size(), 0.0) {
+    for (std::size_t i = 0; i < inputs.size(); ++i)
+      for (const TimeSpan& span : excited) total_[i] += inputs[i](span);
+  }
+
+  /// Whether half of each input is left without the block too, which is then held.
+  bool hold(const TimeSpan& block) {
+    constexpr double kMost = 0.5;
+    std::vector<double> held = held_;
+    for (std::size_t i = 0; i < inputs_.size(); ++i) {
+      held[i] += inputs_[i](block);
+      if (held[i] > kMost * total_[i]) return false;
+    }
+    held_ = std::move(held);
+    return true;
+  }
+
+ private:
+  std::span<const InputShare> inputs_;
+  std::vector<double> total_, held_;
+};
+
+}  // namespace
+
 AssignedBlocks assign_blocks(std::span<const TimeSpan> excited, const SegmentOptions& options, Neighbours neighbours,
-                             double least_s) {
+                             double least_s, std::span<const InputShare> inputs) {
   AssignedBlocks out;
+  HeldInputs of_holdout(inputs, excited);
   double total = 0.0, held = 0.0;
   for (const TimeSpan& span : excited) {
     bool before_held = false;
@@ -171,7 +202,8 @@ AssignedBlocks assign_blocks(std::span<const TimeSpan> excited, const SegmentOpt
       const double length = block.duration();
       // Without a block of identification there is nothing to hold against the hold-out.
       const bool hold = options.holdout > 0.0 && total > 0.0 &&
-                        held + 0.5 * length <= options.holdout * (total + length) - kRounding_s;
+                        held + 0.5 * length <= options.holdout * (total + length) - kRounding_s &&
+                        of_holdout.hold(block);
       std::vector<TimeSpan>& list = hold ? out.holdout : out.identification;
       if (neighbours == Neighbours::kJoined && !first && hold == before_held) {
         list.back().end = block.end;

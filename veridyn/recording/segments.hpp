@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -99,11 +100,16 @@ struct AssignedBlocks {
   std::vector<TimeSpan> identification, holdout;
 };
 
+/// How much a span has of an input that must be identified from: the integral of its square, say.
+using InputShare = std::function<double(const TimeSpan&)>;
+
 /// Assigns every excited stretch in blocks to identification and hold-out, in turn, so that both see the recording's
 /// beginning and end and every manoeuvre that is repeated. The share of the hold-out, counted over the whole recording,
-/// is kept as closely as whole blocks allow; the first block is for identification. Where blocks of different use meet,
+/// is kept as closely as whole blocks allow; the first block is for identification, and so is one without which less
+/// than half of one of `inputs` would be left to identify from. Where blocks of different use meet,
 /// both are shortened by the guard; what is left shorter than `least_s` is dropped.
 [[nodiscard]] AssignedBlocks assign_blocks(std::span<const TimeSpan> excited, const SegmentOptions& options,
-                                           Neighbours neighbours, double least_s);
+                                           Neighbours neighbours, double least_s,
+                                           std::span<const InputShare> inputs = {});
 
 }  // namespace veridyn::recording

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -130,6 +131,71 @@ TEST(Segments, FollowTheUser) {
   EXPECT_EQ(found.longitudinal.excited, given.longitudinal);
   EXPECT_EQ(found.longitudinal.identification, given.longitudinal);
   EXPECT_TRUE(found.longitudinal.holdout.empty());
+}
+
+/// Three seconds cut out of a flight: nothing but a doublet of the elevator.
+TEST(Segments, TakeAFileOfOneManoeuvreForWhatItIs) {
+  Flight cut;
+  const auto part = [](std::vector<double>& x) { x = std::vector<double>(x.begin() + 3500, x.begin() + 3650); };
+  for (std::vector<double>* x : {&cut.airspeed, &cut.p, &cut.q, &cut.r, &cut.elevator, &cut.aileron, &cut.rudder})
+    part(*x);
+  const Segments found = find_segments(cut.signals(), options());
+  ASSERT_EQ(found.airborne.size(), 1u);
+  ASSERT_EQ(found.longitudinal.identification.size(), 1u);
+  EXPECT_NEAR(found.longitudinal.identification[0].duration(), 3.0, 0.05);
+  EXPECT_TRUE(found.longitudinal.holdout.empty());
+  EXPECT_TRUE(found.lateral.excited.empty());
+}
+
+// 30 s of aileron, in the second block of which alone the rudder is moved: without it nothing says what it does.
+TEST(Segments, KeepTheOnlyManoeuvreOfASurfaceForIdentification) {
+  Flight flight;
+  for (std::size_t k = 0; k < flight.rudder.size(); ++k) {
+    const double t = kStep * static_cast<double>(k);
+    if (t > 120.0 && t < 150.0) {
+      flight.aileron[k] = 5.0 * kDegree * std::sin(2.0 * t);
+      flight.p[k] = 30.0 * kDegree * std::sin(2.0 * t);
+    }
+  }
+  const Segments before = find_segments(flight.signals(), options());
+  ASSERT_FALSE(before.lateral.holdout.empty());
+  const TimeSpan held = before.lateral.holdout.front();
+  for (std::size_t k = 0; k < flight.rudder.size(); ++k) {
+    const double t = kStep * static_cast<double>(k);
+    if (t > held.begin + 2.0 && t < held.end - 2.0) flight.rudder[k] = 5.0 * kDegree * std::sin(3.0 * t);
+  }
+  for (const TimeSpan& span : find_segments(flight.signals(), options()).lateral.holdout)
+    EXPECT_FALSE(span.contains(0.5 * (held.begin + held.end)));
+}
+
+// The aircraft climbs by 1 m/s from 30 s on, ten seconds after it is fast enough, and comes back at 190 s.
+TEST(Segments, LeaveOutTheGroundRollAndTheLanding) {
+  Flight flight;
+  std::vector<double> vel_down;
+  for (std::size_t k = 0; k < flight.airspeed.size(); ++k) {
+    const double t = kStep * static_cast<double>(k);
+    vel_down.push_back(t > 30.0 && t < 50.0 ? -1.0 : t > 170.0 && t < 190.0 ? 1.0 : 0.0);
+    if (t > 195.0) flight.airspeed[k] = 1.0;
+  }
+  SegmentSignals signals = flight.signals();
+  signals.vel_down = vel_down;
+  const Segments found = find_segments(signals, options());
+  ASSERT_EQ(found.airborne.size(), 1u);
+  EXPECT_NEAR(found.airborne[0].begin, 35.0, 0.1);
+  EXPECT_NEAR(found.airborne[0].end, 185.0, 0.1);
+  // In a recording that begins and ends in the air nothing is cut off.
+  std::ranges::fill(flight.airspeed, 15.0);
+  signals.airspeed = flight.airspeed;
+  EXPECT_NEAR(find_segments(signals, options()).airborne[0].begin, 0.0, 0.1);
+}
+
+// A flight that never leaves the ground by its vertical velocity is as long as its airspeed says.
+TEST(Segments, CutNothingByAVerticalVelocityThatSaysNothing) {
+  const Flight flight;
+  SegmentSignals signals = flight.signals();
+  const std::vector<double> nothing(flight.airspeed.size(), 0.0);
+  signals.vel_down = nothing;
+  EXPECT_NEAR(find_segments(signals, options()).airborne.at(0).begin, 20.0, 0.05);
 }
 
 TEST(Segments, KeepGapsOutOfTheFlight) {

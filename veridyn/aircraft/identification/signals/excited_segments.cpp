@@ -19,6 +19,7 @@ Segments excited_segments(const FlightSignals& s, const SegmentOptions& options)
   signals.elevator = s[FlightSignal::kElevator].value;
   signals.aileron = s[FlightSignal::kAileron].value;
   signals.rudder = s[FlightSignal::kRudder].value;
+  signals.vel_down = s.vel_down;
   return find_segments(signals, options);
 }
 

@@ -35,6 +35,7 @@ struct SegmentSignals {
   std::span<const double> airspeed;
   std::span<const double> p, q, r;
   std::span<const double> elevator, aileron, rudder;  ///< may be empty when there is none
+  std::span<const double> vel_down = {};              ///< [m/s]; may be empty
 };
 
 /// Excited stretches of one axis and how they are used.
@@ -54,10 +55,11 @@ struct Segments {
   [[nodiscard]] const AxisSegments& of(Axis axis) const { return axis == Axis::kLongitudinal ? longitudinal : lateral; }
 };
 
-/// Finds where the aircraft flies, where a surface is moved more than in the flight's calm parts (activity: RMS about
-/// the mean in a sliding window) and the body answers, longitudinal (elevator, q) and lateral (aileron or rudder, p or
-/// r) separately, and assigns the blocks of each axis to identification and hold-out so that both hold every kind of
-/// manoeuvre.
+/// Finds where the aircraft flies (of a flight that the recording has from take-off, or to landing, what is more than 5
+/// m above the place where it began or ended, as the integral of `vel_down` has it), where a surface is moved more than
+/// in the flight's calm parts (activity: RMS about the mean in a sliding window) and the body answers, longitudinal
+/// (elevator, q) and lateral (aileron or rudder, p or r) separately, and assigns the blocks of each axis to
+/// identification and hold-out so that both hold every kind of manoeuvre.
 [[nodiscard]] Segments find_segments(const SegmentSignals& signals, const SegmentOptions& options);
 
 }  // namespace veridyn::aircraft
