@@ -97,7 +97,7 @@ Summary jsbsim_summary(const aircraft::CompletedSubject& completed, const aircra
     sources[value.name] = Summary::object({{"from", aircraft::kValueOriginNames[value.origin]}, {"text", value.text}});
   Summary modes = Summary::array();
   for (const aircraft::FlownMode& mode : trial.modes)
-    modes.push_back(Summary::object({{"name", aircraft::kFlightModeNames[mode.linear.mode]},
+    modes.push_back(Summary::object({{"name", aircraft::words_of(mode.linear.mode)},
                                      {"growth", mode.linear.s.real()},
                                      {"flown", mode.growth},
                                      {"as_predicted", mode.verdict == aircraft::ModeVerdict::kAsPredicted}}));

@@ -17,6 +17,7 @@ import tempfile
 import numpy
 
 from intervals import MEANT, IntervalCount
+from jsbsim_modes import true_modes
 from jsbsim_pilot import AIRCRAFT, AIRS, DEG, RECORDED, SURFACES, THRUST, body_of, fly, state_of, trimmed
 from program import run_study, write_csv
 
@@ -181,6 +182,8 @@ files = ["flight.csv", "gps.csv"]
 {map}
 [reconstruct]
 airspeed_is = "true"
+[flying_qualities]
+airspeed = {speed}
 """
 
 
@@ -201,6 +204,7 @@ def study_of(name, flight):
     maps += [f'{c} = "gps.{c}"' for c in ("vel_north", "vel_east", "vel_down")]
     down = float(numpy.mean(flight.truth["thrust_moment_y"] / flight.truth["thrust"]))
     values = {"name": name, "model": model, "map": "\n".join(maps), "imu": list(flight.imu), "thrust_down": down}
+    values["speed"] = float(flight.truth["airspeed"][0])
     return STUDY.format(**flight.body, **values)
 
 
@@ -216,7 +220,8 @@ def identified(name, air, seed, folder):
 
 
 def counted(flights, folder, say=lambda text: None):
-    """Counts of (aircraft, air, seed), by "all", aircraft, air, coefficient, parameter and "graded yes"."""
+    """Counts of (aircraft, air, seed), by "all", aircraft, air, coefficient, parameter and "graded yes", and of the
+    natural modes by "modes" and each quantity of them."""
     counts = {}
     for name, air, seed in flights:
         place = pathlib.Path(folder) / f"{name}_{air}_{seed}"
@@ -234,6 +239,17 @@ def counted(flights, folder, say=lambda text: None):
             if not p["low95"] <= true <= p["high95"]:
                 say(f"{name} {air} {seed}: {p['name']} {p['value']:.4g} in [{p['low95']:.4g}, {p['high95']:.4g}], "
                     f"true {true:.4g}, {p['status']}")
+        modes = true_modes(name)
+        for quantity in estimate.get("derived", []):
+            if quantity["name"] not in modes or quantity["low95"] is None:
+                continue
+            true, what = modes[quantity["name"]], quantity["name"]
+            ends = {"low95": quantity["low95"], "high95": quantity["high95"] or numpy.inf}
+            for key in ("modes", what):
+                counts.setdefault(key, IntervalCount(MEANT)).add(quantity | ends | {"status": "identified"}, true)
+            if not ends["low95"] <= true <= ends["high95"]:
+                say(f"{name} {air} {seed}: {what} {quantity['value']:.4g} in [{ends['low95']:.4g}, "
+                    f"{ends['high95']:.4g}], true {true:.4g}")
     return counts
 
 

@@ -29,3 +29,8 @@ def test_intervals_of_derivatives_hold_the_truth(tmp_path, comparison):
     comparison.within("identified, more than 10 % off and outside, share", count.wrong / count.identified, 0.01)
     comparison.within("of flights graded yes: intervals that do not hold, share", 1.0 - yes.held / yes.intervals, 0.07)
     comparison.within("half width over error, medians", count.width_over_error(), 4.5)
+    # Short period, phugoid, Dutch roll, roll and spiral, by JSBSim's own linearisation.
+    modes = counts["modes"]
+    assert modes.intervals > 40
+    comparison.within("natural modes: intervals that do not hold, share", 1.0 - modes.held / modes.intervals, 0.1)
+    comparison.within("natural modes: median error, relative", modes.median_error(), 0.06)

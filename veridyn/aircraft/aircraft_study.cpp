@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "veridyn/aircraft/export/flight_condition.hpp"
+#include "veridyn/aircraft/flying_qualities/derived_modes.hpp"
 #include "veridyn/aircraft/identification/evidence/contradicted_flight.hpp"
 #include "veridyn/aircraft/identification/evidence/recording_evidence.hpp"
 #include "veridyn/aircraft/identification/fit/accelerometer_place.hpp"
@@ -362,6 +363,14 @@ OpenLoop open_loop_of(const FlightAnalysis& analysis, RowUse use, const FlightSt
                        estimate, options, progress);
 }
 
+/// The natural modes of the identified aircraft in the straight flight nearest to what was flown.
+std::vector<estimation::DerivedQuantity> modes_of(const FlightAnalysis& analysis, const FlightStudy& study) {
+  const std::optional<Trim> flown = typical_flight(analysis.flights, study.flying_qualities);
+  if (!flown) return {};
+  return derived_modes(analysis.identified, analysis.coefficients, analysis.estimate, *flown, study.flying_qualities,
+                       study.seed);
+}
+
 /// Whether the motion of any flight is known.
 bool any_motion(const FlightAnalysis& analysis) {
   return std::ranges::any_of(analysis.flights, &PreparedFlight::usable);
@@ -395,7 +404,10 @@ FlightAnalysis identify(std::span<const FlightStudy> studies, Progress& progress
   analysis.validation = validate_flights(analysis.flights, RowUse::kHoldout, analysis.identified,
                                          identified_coefficients(analysis.coefficients), study.validate);
   analysis.open_loop = open_loop_of(analysis, RowUse::kHoldout, study, estimate_of(study, analysis), progress);
-  return with_results(std::move(analysis), studies, progress);
+  analysis = with_results(std::move(analysis), studies, progress);
+  progress.stage("modes and flying qualities");
+  analysis.estimate.derived = modes_of(analysis, study);
+  return analysis;
 }
 
 FlightAnalysis identify(const FlightStudy& study, Progress& progress) {
@@ -419,6 +431,7 @@ FlightAnalysis validate(std::span<const FlightStudy> studies, const estimation::
   analysis.estimate.parameters = estimate.parameters;
   analysis.estimate.covariance = estimate.covariance;
   analysis.estimate.method = estimate.method;
+  analysis.estimate.derived = estimate.derived;
   analysis.estimate.recordings = recordings_of(analysis, true);
   return analysis;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "veridyn/aircraft/flying_qualities/levels.hpp"
 #include "veridyn/aircraft/identification/budget/sensor_priors.hpp"
 #include "veridyn/aircraft/identification/fit/coefficient_uncertainty.hpp"
 #include "veridyn/aircraft/identification/identification.hpp"
@@ -50,6 +51,7 @@ struct FlightStudy {
   TrackOptions track;
   std::vector<ModelChange> true_changes;  ///< of a simulated flight
   UncertaintyOptions uncertainty;
+  FlyingQualities flying_qualities;
   std::vector<std::filesystem::path> inputs;  ///< files that were read
 };
 

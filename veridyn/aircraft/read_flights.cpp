@@ -58,6 +58,7 @@ FlightStudy read_options(const Study& study) {
   result.validate = ValidationOptions::keys().read(root.table_or_empty("validate"));
   result.track = TrackOptions::keys().read(root.table_or_empty("track"));
   result.uncertainty = UncertaintyOptions::keys().read(root.table_or_empty("uncertainty"));
+  result.flying_qualities = FlyingQualities::keys().read(root.table_or_empty("flying_qualities"));
   if (!(result.segments.min_airspeed_mps > 0.0))
     result.segments.min_airspeed_mps = least_flying_airspeed(result.subject);
   return result;
@@ -113,7 +114,6 @@ FlightStudy recorded(const recording::StudyRecording& run, const StudyTable& dat
   return result;
 }
 
-/// What several flights have to have in common.
 /// Surfaces that the aircraft does not have are no terms of its model.
 void leave_out_absent_surfaces(std::vector<FlightStudy>& flights, const StudyTable& subject) {
   const auto recorded = [&](std::string_view name) {
@@ -125,6 +125,7 @@ void leave_out_absent_surfaces(std::vector<FlightStudy>& flights, const StudyTab
   }
 }
 
+/// What several flights have to have in common.
 std::vector<FlightStudy> alike(std::vector<FlightStudy> flights) {
   const bool whole_flights = std::ranges::any_of(flights, &FlightStudy::held_out);
   double slowest = recording::kHighestGridRate_Hz, fastest = 0.0;
@@ -172,8 +173,8 @@ std::vector<FlightStudy> read_flights(const Study& study, Progress& progress) {
   const std::vector<recording::StudyRecording> runs = recording::read_study_recordings(data, progress.threads());
   const SurfaceThrows throws = throws_of(options.subject, root.table("subject"));
   for (const recording::StudyRecording& run : runs) flights.push_back(recorded(run, data, options, throws));
-  root.finish();
   leave_out_absent_surfaces(flights, root.table("subject"));
+  root.finish();
   if (flights.size() > 1) return alike(std::move(flights));
   return flights;
 }

@@ -159,6 +159,10 @@ Document identification_report(const FlightStudy& study, const FlightAnalysis& a
     return section;
   };
   add(parameters_section(analysis, ""), !given);
+  add(derived_section(analysis.estimate, "Modes and flying qualities",
+                      "Small motions about straight and level flight with the controls held, by the identified "
+                      "coefficients. Intervals are of their covariance. Levels are of MIL-F-8785C, for piloted "
+                      "aircraft."));
   add(coefficients_section(analysis));
   add(evidence_section(analysis.estimate));
   add(methods_section(analysis), !given);

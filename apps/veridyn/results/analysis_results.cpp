@@ -25,6 +25,14 @@ std::string parameters_csv(const Estimate& estimate) {
   return text;
 }
 
+std::string derived_csv(const Estimate& estimate) {
+  std::string text = "name,value,low95,high95,unit,note\n";
+  for (const estimation::DerivedQuantity& quantity : estimate.derived)
+    text += fmt::format("{},{},{},{},{},\"{}\"\n", quantity.name, quantity.value, quantity.low95, quantity.high95,
+                        quantity.unit, quantity.note);
+  return text;
+}
+
 std::string methods_csv(const Analysis& analysis) {
   std::string text = "parameter,method,value,sigma,low95,high95,unit\n";
   for (const ParameterGroup& group : analysis.groups) {
@@ -92,6 +100,25 @@ std::vector<std::string> parameter_lines(const Estimate& estimate) {
   return lines;
 }
 
+/// A line a group: "short period  frequency 4.91 (4.71 to 5.12) rad/s, damping 0.61 (0.55 to 0.68)".
+std::vector<std::string> derived_lines(const Estimate& estimate) {
+  std::vector<std::string> lines;
+  std::string_view group;
+  for (const estimation::DerivedQuantity& quantity : estimate.derived) {
+    std::string name = quantity.name.substr(quantity.name.find('.') + 1);
+    std::ranges::replace(name, '_', ' ');
+    std::string text = fmt::format("{} {:.3g}", name, quantity.value);
+    if (quantity.low95 < quantity.high95) text += fmt::format(" ({:.3g} to {:.3g})", quantity.low95, quantity.high95);
+    if (quantity.unit != "1") text += " " + quantity.unit;
+    if (quantity.group == group)
+      lines.back() += ", " + text;
+    else
+      lines.push_back(fmt::format("  {:<12} {}", quantity.group, text));
+    group = quantity.group;
+  }
+  return lines;
+}
+
 std::vector<std::string> prediction_lines(const Analysis& analysis) {
   std::vector<std::string> lines;
   for (const estimation::PredictedQuantity& q : analysis.predictions) {
@@ -125,6 +152,7 @@ void print_analysis(const CommonOptions& options, const std::filesystem::path& f
   else if (!estimate.structure.empty())
     print_line(options, fmt::format("  structure: {}, as the study says", estimate.structure));
   print(parameter_lines(estimate));
+  print(derived_lines(estimate));
   print(prediction_lines(analysis));
   print(more.lines);
   for (const std::string& warning : estimate.warnings) print_line(options, "warning: " + warning);
@@ -137,6 +165,7 @@ void publish_analysis(OutputFolder& folder, const RunRecord& record, const Commo
                       const Analysis& analysis, const MoreResults& more) {
   folder.write("estimate.json", io::to_json(analysis.estimate));
   folder.write("parameters.csv", parameters_csv(analysis.estimate));
+  if (!analysis.estimate.derived.empty()) folder.write("derived.csv", derived_csv(analysis.estimate));
   if (std::ranges::any_of(analysis.groups, [](const ParameterGroup& group) { return group.methods.size() > 1; }))
     folder.write("methods.csv", methods_csv(analysis));
   folder.publish(record, options, summary_of(folder.path(), analysis, more));

@@ -34,6 +34,7 @@ void finish_flight_study(const StudyTable& root) {
   static_cast<void>(aircraft::ValidationOptions::keys().read(root.table_or_empty("validate")));
   static_cast<void>(aircraft::TrackOptions::keys().read(root.table_or_empty("track")));
   static_cast<void>(aircraft::UncertaintyOptions::keys().read(root.table_or_empty("uncertainty")));
+  static_cast<void>(aircraft::FlyingQualities::keys().read(root.table_or_empty("flying_qualities")));
   root.accept("sensitivity");
   root.finish();
 }

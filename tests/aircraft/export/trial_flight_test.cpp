@@ -19,9 +19,9 @@ TrialFlight flown(const Subject& s, double airspeed = 20.0) {
   return fly_trial(complete_subject(s, s, nullptr, {airspeed, 1.2, "of the test"}));
 }
 
-const FlownMode& mode_of(const TrialFlight& trial, FlightMode mode) {
+const FlownMode& mode_of(const TrialFlight& trial, Mode mode) {
   const auto at = std::ranges::find(trial.modes, mode, [](const FlownMode& m) { return m.linear.mode; });
-  EXPECT_NE(at, trial.modes.end()) << kFlightModeNames[mode];
+  EXPECT_NE(at, trial.modes.end()) << words_of(mode);
   return *at;
 }
 
@@ -31,7 +31,7 @@ TEST(TrialFlight, EveryModeOfAStableAircraftDoesWhatTheModelSays) {
   EXPECT_TRUE(trial.as_predicted()) << ::testing::PrintToString(trial_lines(trial));
   EXPECT_GE(trial.modes.size(), 4u);
   for (const FlownMode& mode : trial.modes) {
-    EXPECT_EQ(mode.verdict, ModeVerdict::kAsPredicted) << kFlightModeNames[mode.linear.mode];
+    EXPECT_EQ(mode.verdict, ModeVerdict::kAsPredicted) << words_of(mode.linear.mode);
     EXPECT_FALSE(mode.surface.empty());
   }
 }
@@ -95,13 +95,13 @@ TEST(TrialFlight, AModeIsFollowedAfterTheSurfaceThatMovesItMost) {
   Subject s = builtin_subject("thor");
   const TrialFlight with = flown(s);
   ASSERT_FALSE(with.modes.empty()) << with.trim.message();
-  EXPECT_EQ(mode_of(with, FlightMode::kDutchRoll).surface, "rudder");
-  EXPECT_EQ(mode_of(with, FlightMode::kRoll).surface, "aileron");
-  EXPECT_EQ(mode_of(with, FlightMode::kShortPeriod).surface, "elevator");
+  EXPECT_EQ(mode_of(with, Mode::kDutchRoll).surface, "rudder");
+  EXPECT_EQ(mode_of(with, Mode::kRoll).surface, "aileron");
+  EXPECT_EQ(mode_of(with, Mode::kShortPeriod).surface, "elevator");
   for (const Coefficient c : {Coefficient::kCY, Coefficient::kCl, Coefficient::kCn}) s.model.at(c).values.back() = 0.0;
   const TrialFlight without = flown(s);
   ASSERT_FALSE(without.modes.empty()) << without.trim.message();
-  EXPECT_EQ(mode_of(without, FlightMode::kDutchRoll).surface, "aileron");
+  EXPECT_EQ(mode_of(without, Mode::kDutchRoll).surface, "aileron");
 }
 
 TEST(TrialFlight, LinesNameTheModesWithWhatTheyDo) {

@@ -95,6 +95,28 @@ TEST(EstimateJson, KeepsTheRecordingsOfSeveral) {
   EXPECT_THAT(message_of([&] { static_cast<void>(read_estimate(broken)); }), HasSubstr("recordings[0]: name"));
 }
 
+// An end that is infinite is null in the file, which JSON has no number for.
+TEST(EstimateJson, KeepsWhatFollowsFromTheParameters) {
+  estimation::Estimate e = two_parameters();
+  EXPECT_EQ(to_json(e).find("derived"), std::string::npos);
+  e.derived = {{.group = "spiral mode",
+                .name = "spiral.time_to_half",
+                .value = 12.5,
+                .low95 = 8.0,
+                .high95 = kInfinity,
+                .unit = "s",
+                .note = "at 20 m/s"}};
+  const testing::TemporaryFolder folder;
+  const estimation::Estimate read = read_estimate(folder.write("estimate.json", to_json(e)));
+  ASSERT_EQ(read.derived.size(), 1u);
+  EXPECT_EQ(read.derived[0].name, "spiral.time_to_half");
+  EXPECT_EQ(read.derived[0].group, "spiral mode");
+  EXPECT_EQ(read.derived[0].value, 12.5);
+  EXPECT_EQ(read.derived[0].low95, 8.0);
+  EXPECT_TRUE(std::isnan(read.derived[0].high95));
+  EXPECT_EQ(read.derived[0].note, "at 20 m/s");
+}
+
 TEST(EstimateJson, KeepsWhatToMeasureNext) {
   estimation::Estimate e = two_parameters();
   EXPECT_EQ(to_json(e).find("next_measurements"), std::string::npos);

@@ -95,10 +95,10 @@ TEST(RollingCars, TyresThatSaturateAreToldFromSofterOnes) {
   EXPECT_EQ(result.covered, result.intervals);
 }
 
-// An accelerometer a quarter of a metre above where the study has it, on a body that leans. With sensors so quiet that a
-// bicycle that rolls leaves more of a four-wheel car than noise, its height is found in part (0.2 +- 0.13 m), and C_r,
-// which is 10 % high if it is taken at its word, comes out 1.5 % high. C_f and I_z are 6 to 8 % high with it and 3 to 6 %
-// off without: place, trail and roll steer take their share of what the height does, and the intervals hold it.
+// An accelerometer a quarter of a metre above where the study has it, on a body that leans. With sensors so quiet that
+// a bicycle that rolls leaves more of a four-wheel car than noise, its height is found in part (0.2 +- 0.13 m), and
+// C_r, which is 10 % high if it is taken at its word, comes out 1.5 % high. C_f and I_z are 6 to 8 % high with it and 3
+// to 6 % off without: place, trail and roll steer take their share of what the height does, and the intervals hold it.
 TEST(RollingCars, AnAccelerometerAboveTheCentreOfGravityIsSeen) {
   constexpr double kAbove_m = 0.25;
   VehicleStudy study =

@@ -151,7 +151,7 @@ bool TrialFlight::as_predicted() const {
 std::vector<std::string> TrialFlight::unstable() const {
   std::vector<std::string> names;
   for (const FlownMode& m : modes)
-    if (!m.linear.stable()) names.emplace_back(kFlightModeNames[m.linear.mode]);
+    if (!m.linear.stable()) names.emplace_back(words_of(m.linear.mode));
   return names;
 }
 
@@ -217,8 +217,7 @@ std::vector<std::string> trial_lines(const TrialFlight& trial) {
   if (trial.without_asymmetry)
     lines.front() += ", without CY_0, Cl_0 and Cn_0, which no rudder holds: straight flight takes some bank";
   for (const FlownMode& mode : trial.modes)
-    lines.push_back(
-        fmt::format("{:<13} {}: {}", kFlightModeNames[mode.linear.mode], described(mode.linear), said(mode)));
+    lines.push_back(fmt::format("{:<13} {}: {}", words_of(mode.linear.mode), described(mode.linear), said(mode)));
   return lines;
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "veridyn/aircraft/export/complete_subject.hpp"
-#include "veridyn/aircraft/export/flight_modes.hpp"
+#include "veridyn/aircraft/model/linear_modes.hpp"
 #include "veridyn/aircraft/model/trim.hpp"
 
 namespace veridyn::aircraft {

@@ -8,6 +8,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/judgement/judgement.hpp"
+#include "veridyn/estimation/result/derived_quantity.hpp"
 #include "veridyn/estimation/result/parameter.hpp"
 
 namespace veridyn::estimation {
@@ -71,6 +72,7 @@ struct Estimate {
   bool interrupted = false;  ///< the best that was there when the search was interrupted
   std::vector<Parameter> parameters;
   Eigen::MatrixXd covariance;                 ///< in parameter order; zero between separately estimated groups
+  std::vector<DerivedQuantity> derived = {};  ///< what follows from the parameters
   std::vector<MethodEstimate> other_methods;  ///< alongside `parameters`; `other_methods` of estimate.json
   std::map<std::string, double> fit;
   std::map<std::string, std::vector<IntervalPart>> interval_parts = {};  ///< by parameter; written into `fit`

@@ -203,6 +203,25 @@ void read_next_measurements(const ordered_json& root, const std::string& file, E
   }
 }
 
+/// Where an estimate has some.
+void read_derived(const ordered_json& root, const std::string& file, Estimate& estimate) {
+  if (!root.contains("derived")) return;
+  if (!root["derived"].is_array()) throw InputError(file, "'derived' is not an array");
+  for (const ordered_json& quantity : root["derived"]) {
+    const std::string place = fmt::format("{}: derived[{}]", file, estimate.derived.size());
+    const auto number_of = [&](const char* key) {
+      return read_number(require(quantity, key, place), fmt::format("{}.{}", place, key));
+    };
+    estimate.derived.push_back({.group = read_text(quantity, "group", place),
+                                .name = read_text(quantity, "name", place),
+                                .value = number_of("value"),
+                                .low95 = number_of("low95"),
+                                .high95 = number_of("high95"),
+                                .unit = read_text(quantity, "unit", place),
+                                .note = read_text(quantity, "note", place)});
+  }
+}
+
 ordered_json trial_of(const estimation::StructureTrial& trial) {
   ordered_json parameters = ordered_json::array();
   for (const Parameter& p : trial.parameters)
@@ -326,6 +345,15 @@ std::string to_json(const Estimate& estimate) {
                                        {"status", std::string(estimation::to_string(p.status))}});
     }
   }
+  for (const estimation::DerivedQuantity& quantity : estimate.derived) {
+    root["derived"].push_back({{"name", quantity.name},
+                               {"value", number(quantity.value)},
+                               {"low95", number(quantity.low95)},
+                               {"high95", number(quantity.high95)},
+                               {"unit", quantity.unit},
+                               {"group", quantity.group},
+                               {"note", quantity.note}});
+  }
   root["covariance"] = ordered_json::array();
   for (Eigen::Index i = 0; i < estimate.covariance.rows(); ++i) {
     ordered_json row = ordered_json::array();
@@ -423,6 +451,7 @@ Estimate read_estimate(const std::filesystem::path& path) {
   }
   read_structure(root, name, estimate);
   read_next_measurements(root, name, estimate);
+  read_derived(root, name, estimate);
   return estimate;
 }
 

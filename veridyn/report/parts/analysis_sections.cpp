@@ -151,6 +151,29 @@ Section parameters_section(const Analysis& analysis, std::string caption) {
   return section;
 }
 
+Section derived_section(const estimation::Estimate& estimate, std::string title, std::string caption) {
+  Section section{.title = title, .id = "derived"};
+  if (estimate.derived.empty()) return section;
+  Table table{.title = std::move(title),
+              .caption = std::move(caption),
+              .columns = {{.name = "of", .align = Align::kLeft},
+                          {.name = "quantity", .align = Align::kLeft},
+                          {.name = "value", .digits = 3},
+                          {.name = "from", .digits = 3, .group = "95 % interval"},
+                          {.name = "to", .digits = 3, .group = "95 % interval"},
+                          {.name = "unit", .align = Align::kLeft},
+                          {.name = "note", .align = Align::kLeft}}};
+  for (const estimation::DerivedQuantity& quantity : estimate.derived) {
+    std::string name = quantity.name.substr(quantity.name.find('.') + 1);
+    std::ranges::replace(name, '_', ' ');
+    table.rows.push_back({.cells = {text_cell(quantity.group), text_cell(std::move(name)), number_cell(quantity.value),
+                                    number_cell(quantity.low95), number_cell(quantity.high95),
+                                    text_cell(quantity.unit == "1" ? "" : quantity.unit), text_cell(quantity.note)}});
+  }
+  section.blocks.emplace_back(std::move(table));
+  return section;
+}
+
 Section methods_section(const Analysis& analysis) {
   Section section{.title = "Estimates of all methods", .id = "methods", .folded = true};
   for (const ParameterGroup& group : analysis.groups) {

@@ -17,6 +17,9 @@ namespace veridyn::report {
 /// @param caption what a reader should know of this domain's parameters
 [[nodiscard]] Section parameters_section(const estimation::Analysis& analysis, std::string caption);
 
+/// What follows from the parameters, a table. @param caption where it is from
+[[nodiscard]] Section derived_section(const estimation::Estimate& estimate, std::string title, std::string caption);
+
 /// Estimates of all methods side by side, a plot for each group that was not rejected; methods that gave nothing say
 /// why.
 [[nodiscard]] Section methods_section(const estimation::Analysis& analysis);

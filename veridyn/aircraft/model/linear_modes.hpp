@@ -10,16 +10,18 @@
 
 namespace veridyn::aircraft {
 
-/// The motions that a small disturbance of steady flight is made of.
-enum class FlightMode { kShortPeriod, kPhugoid, kRoll, kDutchRoll, kSpiral };
-inline constexpr std::size_t kFlightModes = 5;  ///< values of FlightMode
+/// The natural motions of an aircraft in straight flight.
+enum class Mode { kShortPeriod, kPhugoid, kDutchRoll, kRoll, kSpiral };
+inline constexpr std::size_t kModes = 5;  ///< values of Mode
+/// As in results.
+inline constexpr EnumArray<Mode, std::string_view, kModes> kModeNames{
+    {"short_period", "phugoid", "dutch_roll", "roll", "spiral"}};
 /// "short period".
-inline constexpr EnumArray<FlightMode, std::string_view, kFlightModes> kFlightModeNames{
-    {"short period", "phugoid", "roll", "Dutch roll", "spiral"}};
+[[nodiscard]] std::string_view words_of(Mode mode);
 
 /// A mode of the motion about a trim: it goes as Re(e^(s t)).
 struct LinearMode {
-  FlightMode mode = FlightMode::kShortPeriod;
+  Mode mode = Mode::kShortPeriod;
   std::complex<double> s;  ///< of a pair that with imag > 0
   Eigen::VectorXcd left;   ///< left eigenvector: left' x of a motion x' = A x goes as e^(s t) alone
 

@@ -1,4 +1,4 @@
-#include "veridyn/aircraft/export/flight_modes.hpp"
+#include "veridyn/aircraft/model/linear_modes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -28,33 +28,33 @@ LinearModel made() {
   return model;
 }
 
-TEST(FlightModesOfAnExport, AreNamedByBlockAndSpeed) {
+TEST(LinearModes, AreNamedByBlockAndSpeed) {
   const std::vector<LinearMode> modes = linear_modes(made());
   ASSERT_EQ(modes.size(), 5u);
-  const auto s_of = [&](FlightMode mode) { return std::ranges::find(modes, mode, &LinearMode::mode)->s; };
+  const auto s_of = [&](Mode mode) { return std::ranges::find(modes, mode, &LinearMode::mode)->s; };
   using Complex = std::complex<double>;
-  EXPECT_LT(std::abs(s_of(FlightMode::kShortPeriod) - Complex(-3.0, 5.0)), 1e-12);
-  EXPECT_LT(std::abs(s_of(FlightMode::kPhugoid) - Complex(-0.02, 0.4)), 1e-12);
-  EXPECT_LT(std::abs(s_of(FlightMode::kDutchRoll) - Complex(-0.5, 4.0)), 1e-12);
-  EXPECT_LT(std::abs(s_of(FlightMode::kRoll) - Complex(-12.0, 0.0)), 1e-12);
-  EXPECT_LT(std::abs(s_of(FlightMode::kSpiral) - Complex(0.01, 0.0)), 1e-12);
+  EXPECT_LT(std::abs(s_of(Mode::kShortPeriod) - Complex(-3.0, 5.0)), 1e-12);
+  EXPECT_LT(std::abs(s_of(Mode::kPhugoid) - Complex(-0.02, 0.4)), 1e-12);
+  EXPECT_LT(std::abs(s_of(Mode::kDutchRoll) - Complex(-0.5, 4.0)), 1e-12);
+  EXPECT_LT(std::abs(s_of(Mode::kRoll) - Complex(-12.0, 0.0)), 1e-12);
+  EXPECT_LT(std::abs(s_of(Mode::kSpiral) - Complex(0.01, 0.0)), 1e-12);
 }
 
-TEST(FlightModesOfAnExport, WithoutAnOscillationTheMiddleTwoAreTheDutchRoll) {
+TEST(LinearModes, WithoutAnOscillationTheMiddleTwoAreTheDutchRoll) {
   LinearModel model = made();
   model.A(1, 5) = model.A(5, 1) = 0.0;
   model.A(1, 1) = -0.5, model.A(5, 5) = -0.7;
   int dutch = 0;
   for (const LinearMode& mode : linear_modes(model)) {
-    dutch += mode.mode == FlightMode::kDutchRoll ? 1 : 0;
-    if (mode.mode == FlightMode::kSpiral) EXPECT_NEAR(mode.s.real(), 0.01, 1e-12);
-    if (mode.mode == FlightMode::kRoll) EXPECT_NEAR(mode.s.real(), -12.0, 1e-12);
+    dutch += mode.mode == Mode::kDutchRoll ? 1 : 0;
+    if (mode.mode == Mode::kSpiral) EXPECT_NEAR(mode.s.real(), 0.01, 1e-12);
+    if (mode.mode == Mode::kRoll) EXPECT_NEAR(mode.s.real(), -12.0, 1e-12);
   }
   EXPECT_EQ(dutch, 2);
 }
 
 // left' A = s left' within a block: what makes a mode's size independent of the others.
-TEST(FlightModesOfAnExport, LeftEigenvectorsSeparateThem) {
+TEST(LinearModes, LeftEigenvectorsSeparateThem) {
   const Subject s = builtin_subject("aerosonde");
   Subject symmetric = s;
   const Trim trim = find_trim(symmetric, {.airspeed = 25.0});
@@ -65,7 +65,7 @@ TEST(FlightModesOfAnExport, LeftEigenvectorsSeparateThem) {
     for (const Eigen::Index j : {1, 3, 5, 6}) model.A(i, j) = model.A(j, i) = 0.0;
   for (const LinearMode& mode : linear_modes(model)) {
     const Eigen::VectorXcd image = model.A.transpose().cast<std::complex<double>>() * mode.left;
-    EXPECT_LT((image - mode.s * mode.left).norm(), 1e-9 * image.norm()) << kFlightModeNames[mode.mode];
+    EXPECT_LT((image - mode.s * mode.left).norm(), 1e-9 * image.norm()) << words_of(mode.mode);
   }
 }
 

@@ -1,4 +1,4 @@
-#include "veridyn/aircraft/export/flight_modes.hpp"
+#include "veridyn/aircraft/model/linear_modes.hpp"
 
 #include <algorithm>
 #include <array>
@@ -33,9 +33,15 @@ std::vector<LinearMode> modes_of(const LinearModel& model, const Block& block) {
 
 }  // namespace
 
+std::string_view words_of(Mode mode) {
+  constexpr EnumArray<Mode, std::string_view, kModes> kWords{
+      {"short period", "phugoid", "Dutch roll", "roll", "spiral"}};
+  return kWords[mode];
+}
+
 std::vector<LinearMode> linear_modes(const LinearModel& model) {
   std::vector<LinearMode> modes;
-  const auto named = [&](LinearMode mode, FlightMode name) {
+  const auto named = [&](LinearMode mode, Mode name) {
     mode.mode = name;
     modes.push_back(std::move(mode));
   };
@@ -45,19 +51,18 @@ std::vector<LinearMode> linear_modes(const LinearModel& model) {
   for (LinearMode& mode : longitudinal) {
     const bool fast = counted < 2;
     counted += mode.s.imag() > 0.0 ? 2 : 1;
-    named(std::move(mode), fast ? FlightMode::kShortPeriod : FlightMode::kPhugoid);
+    named(std::move(mode), fast ? Mode::kShortPeriod : Mode::kPhugoid);
   }
   std::vector<LinearMode> lateral = modes_of(model, kLateral);
   const auto pairs = std::ranges::count_if(lateral, [](const LinearMode& m) { return m.s.imag() > 0.0; });
-  const std::array<FlightMode, 4> without_pair = {FlightMode::kRoll, FlightMode::kDutchRoll, FlightMode::kDutchRoll,
-                                                  FlightMode::kSpiral};
+  const std::array<Mode, 4> without_pair = {Mode::kRoll, Mode::kDutchRoll, Mode::kDutchRoll, Mode::kSpiral};
   bool oscillated = false, rolled = false;
   for (std::size_t k = 0; k < lateral.size(); ++k) {
     const bool pair = lateral[k].s.imag() > 0.0;
-    FlightMode name = pairs == 0            ? without_pair[k]
-                      : pair && !oscillated ? FlightMode::kDutchRoll
-                      : !pair && !rolled    ? FlightMode::kRoll
-                                            : FlightMode::kSpiral;
+    Mode name = pairs == 0            ? without_pair[k]
+                : pair && !oscillated ? Mode::kDutchRoll
+                : !pair && !rolled    ? Mode::kRoll
+                                      : Mode::kSpiral;
     oscillated = oscillated || pair;
     rolled = rolled || !pair;
     named(std::move(lateral[k]), name);
