@@ -10,6 +10,8 @@
 ///     aircraft::write_jsbsim(analysis.identified) // export; to_json(subject), io::to_json(estimate)
 ///     aircraft::complete_subject(...)             // what is not known: study, estimates, zero; fly_trial, jsbsim_file
 ///
+/// `flight_modes` of a subject are its natural modes, `derived_modes` those of an estimate with their intervals.
+///
 /// Without a study: `builtin_subject` is an aircraft, `simulate_study` a flight of one, `identify_coefficients` and
 /// `reconstruct(recording, ...)` the stages by themselves; `analyse_swing_test` (inertia) and `calibrate` (air
 /// data) are for the ground. Component `aircraft`.
@@ -17,6 +19,7 @@
 #include "veridyn/aircraft/aircraft_study.hpp"
 #include "veridyn/aircraft/export/jsbsim_export.hpp"
 #include "veridyn/aircraft/flight_sensitivity.hpp"
+#include "veridyn/aircraft/flying_qualities/derived_modes.hpp"
 #include "veridyn/aircraft/identification/identified_estimate.hpp"
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
 #include "veridyn/aircraft/model/estimated_subject.hpp"

@@ -88,11 +88,11 @@ TEST(DriveOpenLoop, BandsHoldTheErrorsOfTheParameters) {
 
 /// Share of ten other drives in the bands of models identified by `identify` and driven by `validate`.
 double inside_on_other_drives(std::string_view more) {
-  const Study study = Study::parse(
-      fmt::format("[subject]\nkind = 'vehicle'\nmass = 1500\na = 1.2\nb = 1.5\n[data]\nframe = 'flu'\n"
-                  "[identify]\nstructure = 'bicycle'\n[validate]\nopen_loop = '10 min'\n{}",
-                  more),
-      "study.toml");
+  const Study study =
+      Study::parse(fmt::format("[subject]\nkind = 'vehicle'\nmass = 1500\na = 1.2\nb = 1.5\n[data]\nframe = 'flu'\n"
+                               "[identify]\nstructure = 'bicycle'\n[validate]\nopen_loop = '10 min'\n{}",
+                               more),
+                   "study.toml");
   const auto recorded = [](std::uint64_t seed, double length) {
     return record_drive(lively_drive(family_car(), seed, 0.014, length), reference_drive_sensors(), seed);
   };
