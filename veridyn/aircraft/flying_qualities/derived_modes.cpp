@@ -265,11 +265,11 @@ std::optional<Trim> typical_flight(std::span<const PreparedFlight> flights, cons
   flown.condition.airspeed = asked.airspeed.value_or(typical(FlightSignal::kAirspeed));
   flown.condition.density =
       median_of(flights, [](const FlightSignals& s) { return std::span<const double>(s.air_density); });
-  flown.alpha = typical(FlightSignal::kAlpha);
+  flown.alpha = or_zero(typical(FlightSignal::kAlpha));
   flown.controls.de = or_zero(typical(FlightSignal::kElevator));
   flown.controls.da = or_zero(typical(FlightSignal::kAileron));
   flown.controls.dr = or_zero(typical(FlightSignal::kRudder));
-  if (!(flown.condition.airspeed > 0.0) || !(flown.condition.density > 0.0) || !std::isfinite(flown.alpha)) return {};
+  if (!(flown.condition.airspeed > 0.0) || !(flown.condition.density > 0.0)) return {};
   return flown;
 }
 

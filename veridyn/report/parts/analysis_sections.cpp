@@ -47,6 +47,9 @@ std::string shares_of(std::span<const estimation::IntervalPart> parts) {
   return words;
 }
 
+/// A level, which is counted.
+bool is_whole(double value) { return value == std::round(value); }
+
 /// Parameters that at least two methods estimated; one method alone compares with nothing.
 std::vector<std::string> compared(const ParameterGroup& group) {
   std::vector<std::string> names;
@@ -166,8 +169,10 @@ Section derived_section(const estimation::Estimate& estimate, std::string title,
   for (const estimation::DerivedQuantity& quantity : estimate.derived) {
     std::string name = quantity.name.substr(quantity.name.find('.') + 1);
     std::ranges::replace(name, '_', ' ');
-    table.rows.push_back({.cells = {text_cell(quantity.group), text_cell(std::move(name)), number_cell(quantity.value),
-                                    number_cell(quantity.low95), number_cell(quantity.high95),
+    const bool whole = is_whole(quantity.value) && is_whole(quantity.low95) && is_whole(quantity.high95);
+    const auto cell = [&](double value) { return whole ? number_cell(value, 0) : number_cell(value); };
+    table.rows.push_back({.cells = {text_cell(quantity.group), text_cell(std::move(name)), cell(quantity.value),
+                                    cell(quantity.low95), cell(quantity.high95),
                                     text_cell(quantity.unit == "1" ? "" : quantity.unit), text_cell(quantity.note)}});
   }
   section.blocks.emplace_back(std::move(table));
