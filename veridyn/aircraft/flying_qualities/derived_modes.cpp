@@ -296,11 +296,10 @@ std::vector<DerivedQuantity> derived_modes(const Subject& identified, std::span<
   };
   for (const Mode mode : enumerators<Mode, kModes>()) {
     if (!drawn.best().modes[mode]) continue;
-    const std::string note =
-        fmt::format("at {:.1f} m/s and {:.3f} kg/m^3", flown.condition.airspeed, flown.condition.density);
     const std::string caution =
         note_of(mode, drawn.best(), results, identified.propulsion.kind != PropulsionKind::kNone);
-    const std::string says = caution.empty() ? note : note + "; " + caution;
+    const std::string says = fmt::format("at {:.1f} m/s and {:.3f} kg/m^3{}{}", flown.condition.airspeed,
+                                         flown.condition.density, caution.empty() ? "" : "; ", caution);
     const Spread decay = drawn.spread(of_mode(mode, &NaturalMode::decay));
     if (has_two_roots(mode)) {
       number(mode, "frequency", "rad/s", drawn.spread(of_mode(mode, &NaturalMode::frequency)), says);
