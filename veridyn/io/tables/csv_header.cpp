@@ -22,7 +22,7 @@ bool is_digits(std::string_view text) {
 
 /// "Time, sec", "pitch,__deg", "V/(m/s)": a unit after the last comma, or the first slash that ends a name.
 Header split_at_sign(const std::string& cell) {
-  const Header whole{printable(cell), ""};
+  Header whole{printable(cell), ""};
   if (const std::size_t comma = cell.rfind(','); comma != std::string::npos && comma > 0) {
     std::string_view text = std::string_view(cell).substr(comma + 1);
     const bool apart = text.starts_with(' ');

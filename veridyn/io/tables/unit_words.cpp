@@ -32,7 +32,7 @@ std::optional<std::string> unit_in_words(std::string_view text) {
 }
 
 std::optional<std::string> unit_of_column(std::string_view text, std::string_view name) {
-  const auto unit = unit_in_words(text);
+  auto unit = unit_in_words(text);
   if (unit == "G" && !names_a_compass(name)) return "g";
   return unit;
 }
