@@ -33,4 +33,4 @@ def test_intervals_of_derivatives_hold_the_truth(tmp_path, comparison):
     modes = counts["modes"]
     assert modes.intervals > 40
     comparison.within("natural modes: intervals that do not hold, share", 1.0 - modes.held / modes.intervals, 0.1)
-    comparison.within("natural modes: median error, relative", modes.median_error(), 0.06)
+    comparison.within("natural modes: half width over error, medians", modes.width_over_error(), 4.5)
