@@ -16,6 +16,7 @@
 #include "veridyn/aircraft/identification/identified_estimate.hpp"
 #include "veridyn/aircraft/identification/parameter_groups.hpp"
 #include "veridyn/aircraft/identification/rows/flight_set.hpp"
+#include "veridyn/aircraft/identification/rows/typical_flight.hpp"
 #include "veridyn/aircraft/identification/signals/direct_air_data.hpp"
 #include "veridyn/aircraft/identification/signals/excited_segments.hpp"
 #include "veridyn/aircraft/identification/validation/evaluated_estimate.hpp"
@@ -365,7 +366,7 @@ OpenLoop open_loop_of(const FlightAnalysis& analysis, RowUse use, const FlightSt
 
 /// The natural modes of the identified aircraft in the straight flight nearest to what was flown.
 std::vector<estimation::DerivedQuantity> modes_of(const FlightAnalysis& analysis, const FlightStudy& study) {
-  const std::optional<Trim> flown = typical_flight(analysis.flights, study.flying_qualities);
+  const std::optional<Trim> flown = typical_flight(analysis.flights, study.flying_qualities.airspeed);
   if (!flown) return {};
   return derived_modes(analysis.identified, analysis.coefficients, analysis.estimate, *flown, study.flying_qualities,
                        study.seed);

@@ -11,6 +11,7 @@
 #include "veridyn/aircraft/model/flight_dynamics.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/linear_algebra/general_eigen.hpp"
+#include "veridyn/numerics/ode.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -68,16 +69,14 @@ std::vector<double> yaw_rate_of_flight(const Subject& s, const Trim& trim, doubl
   const Eigen::Quaterniond attitude(numerics::R_body_from_ned(0.0, trim.theta, 0.0).transpose());
   x.segment<3>(3) = attitude * air_velocity(trim.condition.airspeed, trim.alpha, trim.beta + 0.5 * kDegree);
   x.segment<4>(6) = attitude.coeffs();
-  const auto rate = [&](const RigidBodyState<double>& at) {
+  const auto rate = [&](double, const RigidBodyState<double>& at) {
     return aircraft_rate<double>(s, body, at, trim.controls, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), kDensity,
                                  kGravity);
   };
   std::vector<double> r;
   for (std::size_t k = 0; k < count; ++k) {
     r.push_back(x(12));
-    const RigidBodyState<double> k1 = rate(x), k2 = rate(x + 0.5 * step * k1), k3 = rate(x + 0.5 * step * k2),
-                                 k4 = rate(x + step * k3);
-    x += step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+    x = numerics::runge_kutta_4_step(rate, 0.0, x, step);
     normalise_attitude(x);
   }
   return r;

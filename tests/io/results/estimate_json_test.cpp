@@ -95,7 +95,7 @@ TEST(EstimateJson, KeepsTheRecordingsOfSeveral) {
   EXPECT_THAT(message_of([&] { static_cast<void>(read_estimate(broken)); }), HasSubstr("recordings[0]: name"));
 }
 
-// An end that is infinite is null in the file, which JSON has no number for.
+// JSON has no infinite numbers: such an end of an interval is null in the file.
 TEST(EstimateJson, KeepsWhatFollowsFromTheParameters) {
   estimation::Estimate e = two_parameters();
   EXPECT_EQ(to_json(e).find("derived"), std::string::npos);

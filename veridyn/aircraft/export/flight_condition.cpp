@@ -1,11 +1,11 @@
 #include "veridyn/aircraft/export/flight_condition.hpp"
 
-#include "veridyn/aircraft/flying_qualities/derived_modes.hpp"
+#include "veridyn/aircraft/identification/rows/typical_flight.hpp"
 
 namespace veridyn::aircraft {
 
 void add_flight_condition(std::span<const PreparedFlight> flights, estimation::Estimate& estimate) {
-  const std::optional<Trim> flown = typical_flight(flights, {});
+  const std::optional<Trim> flown = typical_flight(flights);
   if (!flown) return;
   estimate.fit["flight.airspeed"] = flown->condition.airspeed;
   estimate.fit["flight.air_density"] = flown->condition.density;

@@ -1,22 +1,16 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "veridyn/aircraft/flying_qualities/levels.hpp"
 #include "veridyn/aircraft/identification/fit/coefficient_result.hpp"
-#include "veridyn/aircraft/identification/rows/prepared_flight.hpp"
 #include "veridyn/aircraft/model/trim.hpp"
 #include "veridyn/estimation/result/derived_quantity.hpp"
 #include "veridyn/estimation/result/estimate.hpp"
 
 namespace veridyn::aircraft {
-
-/// Straight flight at the medians of airspeed, density, alpha and deflections of what was excited, or at the airspeed
-/// asked for; nothing where nothing was, or no flight's motion is known.
-[[nodiscard]] std::optional<Trim> typical_flight(std::span<const PreparedFlight> flights, const FlyingQualities& asked);
 
 /// The natural modes of the identified aircraft in straight flight (`flight_modes`) and their levels (`level_of`), for
 /// estimate.json: `short_period.frequency`, `.damping`, `.time_to_half` (or `.time_to_double`), `.level` and so on,

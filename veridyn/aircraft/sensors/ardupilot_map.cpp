@@ -59,22 +59,6 @@ const std::vector<AirspeedSource>& ardupilot_airspeeds() {
   return table;
 }
 
-/// The velocity of an autopilot's filter, all components or none, where GPS gives none or it is at least half as fast
-/// again.
-void map_filter_velocity(MapBuilder& builder, const std::string& message, const std::string& filter) {
-  constexpr double kFaster = 1.5;
-  const Channel* gps = builder.alive("GPS.Spd");
-  const Channel* north = builder.alive(message + ".VN");
-  if (north == nullptr || builder.mapped("vel_north")) return;
-  const bool with_gps = gps != nullptr && builder.alive("GPS.GCrs") != nullptr;
-  if (with_gps && north->rate_Hz() < kFaster * gps->rate_Hz()) return;
-  const std::string note = with_gps ? fmt::format("{}, which is faster than GPS ({:.3g} Hz)", filter, gps->rate_Hz())
-                                    : fmt::format("{}, since GPS gives none", filter);
-  builder.apply(std::vector<ChannelRule>{{"vel_north", message + ".VN", "m/s", note},
-                                         {"vel_east", message + ".VE", "m/s", note},
-                                         {"vel_down", message + ".VD", "m/s", note}});
-}
-
 void map_gps_velocity(MapBuilder& builder) {
   const Channel* speed = builder.alive("GPS.Spd");
   const Channel* course = builder.alive("GPS.GCrs");
@@ -260,8 +244,9 @@ void map_servos(MapBuilder& builder, const SurfaceThrows& throws, ServoOutputs o
 }
 
 void map_ardupilot(MapBuilder& builder, const SurfaceThrows& throws) {
-  map_filter_velocity(builder, "XKF1", "autopilot's EKF3");
-  map_filter_velocity(builder, "NKF1", "autopilot's EKF2");
+  const Channel* gps = builder.alive("GPS.GCrs") != nullptr ? builder.alive("GPS.Spd") : nullptr;
+  map_filter_velocity(builder, {"XKF1.VN", "XKF1.VE", "XKF1.VD"}, gps, "autopilot's EKF3");
+  map_filter_velocity(builder, {"NKF1.VN", "NKF1.VE", "NKF1.VD"}, gps, "autopilot's EKF2");
   map_gps_velocity(builder);
   map_ardupilot_pressure(builder);
   map_airspeed(builder, ardupilot_airspeeds());

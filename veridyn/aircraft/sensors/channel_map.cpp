@@ -114,6 +114,20 @@ void MapBuilder::put(std::string channel, const std::string& unit, TimeBase time
   mapped_.recording.set(std::move(made));
 }
 
+void map_filter_velocity(MapBuilder& builder, const VelocitySources& sources, const Channel* gps,
+                         const std::string& filter) {
+  constexpr double kFaster = 1.5;
+  const Channel* north = builder.alive(sources[0]);
+  if (north == nullptr || builder.mapped("vel_north")) return;
+  if (gps != nullptr && north->rate_Hz() < kFaster * gps->rate_Hz()) return;
+  const std::string note = gps != nullptr
+                               ? fmt::format("{}, which is faster than GPS ({:.3g} Hz)", filter, gps->rate_Hz())
+                               : fmt::format("{}, since GPS gives none", filter);
+  builder.apply(std::vector<ChannelRule>{{"vel_north", sources[0], "m/s", note},
+                                         {"vel_east", sources[1], "m/s", note},
+                                         {"vel_down", sources[2], "m/s", note}});
+}
+
 void MapBuilder::leave(std::string source, std::string channel) {
   const Channel* raw = log_.find(source);
   const auto origin = std::ranges::find(mapped_.origins, channel, &recording::ChannelOrigin::channel);

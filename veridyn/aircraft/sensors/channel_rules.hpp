@@ -72,6 +72,14 @@ enum class ServoOutputs { kDataflash, kMavlink };
 /// Surfaces and throttle from servo pulses, by the SERVOn_FUNCTION of the log's parameters. Without these, usual servos
 /// are assumed of a log of the autopilot itself; of telemetry, which may be of another, nothing is.
 void map_servos(MapBuilder& builder, const SurfaceThrows& throws, ServoOutputs outputs);
+/// North, east and down of the velocity of an autopilot's filter.
+using VelocitySources = std::array<std::string, 3>;
+/// Takes that velocity, all components or none, where there is no GPS or it is at least half as fast again, unless one
+/// is there.
+/// @param gps  the first channel of the velocity of GPS, or null
+/// @param filter  its name in the report: "autopilot's EKF3"
+void map_filter_velocity(MapBuilder& builder, const VelocitySources& sources, const Channel* gps,
+                         const std::string& filter);
 /// Roll, pitch and yaw of a quaternion, scalar first.
 void put_attitude(MapBuilder& builder, const std::array<const Channel*, 4>& q, const std::string& source,
                   const std::string& note = "autopilot's filter");

@@ -63,19 +63,6 @@ const std::vector<AirspeedSource>& px4_airspeeds() {
   return table;
 }
 
-/// The velocity of the autopilot's filter, all components or none, where it is at least half as fast again as GPS.
-void map_filter_velocity(MapBuilder& builder) {
-  constexpr double kFaster = 1.5;
-  const Channel* gps = builder.alive("vehicle_gps_position.vel_n_m_s");
-  const Channel* north = builder.alive("vehicle_local_position.vx");
-  if (gps == nullptr || north == nullptr || builder.mapped("vel_north")) return;
-  if (north->rate_Hz() < kFaster * gps->rate_Hz()) return;
-  const std::string note = fmt::format("autopilot's filter, which is faster than GPS ({:.3g} Hz)", gps->rate_Hz());
-  builder.apply(std::vector<ChannelRule>{{"vel_north", "vehicle_local_position.vx", "m/s", note},
-                                         {"vel_east", "vehicle_local_position.vy", "m/s", note},
-                                         {"vel_down", "vehicle_local_position.vz", "m/s", note}});
-}
-
 void map_attitude(MapBuilder& builder) {
   std::array<const Channel*, 4> q{};
   for (std::size_t i = 0; i < 4; ++i) q[i] = builder.log().find(fmt::format("vehicle_attitude.q[{}]", i));
@@ -150,7 +137,10 @@ bool is_px4(const Recording& log) {
 }
 
 void map_px4(MapBuilder& builder, const SurfaceThrows& throws) {
-  map_filter_velocity(builder);
+  if (const Channel* gps = builder.alive("vehicle_gps_position.vel_n_m_s"))
+    map_filter_velocity(builder,
+                        {"vehicle_local_position.vx", "vehicle_local_position.vy", "vehicle_local_position.vz"}, gps,
+                        "autopilot's filter");
   map_airspeed(builder, px4_airspeeds());
   builder.apply(px4_rules());
   map_attitude(builder);
